@@ -3,7 +3,7 @@
 use super::endings::Ending;
 use super::formats::Ambiguous;
 use super::header::short;
-use super::layout::{Layout, Places};
+use super::layout::{Layout, POSITIONS, Places, TIMES, has};
 use super::options::Column;
 use super::units::Quantity;
 
@@ -13,11 +13,14 @@ const LONGEST: usize = 80;
 /// Positions that a message lists.
 const LISTED: usize = 4;
 
-/// Parts of the names of positions.
-const POSITIONS: [&str; 5] = ["count", "enc", "pos", "angle", "theta"];
+/// Parts of the names of what may be a position, and a time: more than say what they are.
+fn positions() -> Vec<&'static str> {
+    [POSITIONS, &["count"]].concat()
+}
 
-/// Parts of the names of times.
-const TIMES: [&str; 4] = ["time", "stamp", "sec", "ms"];
+fn times() -> Vec<&'static str> {
+    [TIMES, &["sec", "ms"]].concat()
+}
 
 /// The option `--column`, with names and units.
 pub(super) fn option(layout: &Layout) -> String {
@@ -33,8 +36,8 @@ pub(super) fn option(layout: &Layout) -> String {
             .to_owned();
     }
     let parts = [
-        guess(layout, Column::T, &TIMES, "TIME"),
-        guess(layout, Column::CountsLarge, &POSITIONS, "POSITION"),
+        guess(layout, Column::T, &times(), "TIME"),
+        guess(layout, Column::CountsLarge, &positions(), "POSITION"),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     format!(
@@ -47,7 +50,7 @@ pub(super) fn option(layout: &Layout) -> String {
 pub(super) fn without_time(layout: &Layout) -> &'static str {
     let is_time = |(place, name): (usize, &String)| {
         let lower = name.to_lowercase();
-        TIMES.iter().any(|word| lower.contains(word))
+        has(&lower, &times())
             || lower == "t"
             || matches!(layout.ending(Column::T.quantity(), place), Ending::Unit(_))
     };
@@ -74,10 +77,7 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
     let (ours, quantity) = (column.name(), column.quantity());
     let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
     let has_unit = |place: &usize| matches!(layout.ending(quantity, *place), Ending::Unit(_));
-    let like = |name: &str| {
-        let name = name.to_lowercase();
-        words.iter().any(|word| name.contains(word))
-    };
+    let like = |name: &str| has(&name.to_lowercase(), words);
     let place = place(&|name| name == ours)
         .or_else(|| place(&|name| name.to_lowercase() == ours))
         .or_else(|| place(&like))
@@ -171,14 +171,11 @@ fn captured(layout: &Layout) -> Option<String> {
     })
 }
 
-/// Columns that are 0 or 1 where no name is that of a position.
+/// Columns that are 0 or 1 where no other one has the name of a position.
 fn levels(layout: &Layout) -> Option<String> {
-    let is_position = |name: &String| {
-        let name = name.to_lowercase();
-        POSITIONS.iter().any(|word| name.contains(word))
-    };
     let places = &layout.two_levels;
-    if places.len() < 2 || layout.names.iter().any(is_position) {
+    let mut others = (layout.names.iter().enumerate()).filter(|(place, _)| !places.contains(place));
+    if places.len() < 2 || others.any(|(_, name)| has(&name.to_lowercase(), &positions())) {
         return None;
     }
     let names = places.iter().map(|place| short(&layout.names[*place]));
@@ -207,6 +204,11 @@ mod tests {
         let said = "r.csv: line 1: the columns s1, s2 are 0 or 1 in the first rows; if they are the lines of \
                     an encoder, make a recording of them with host-sim decode";
         assert_eq!(read(&log("t,s1,s2,on", 1), "").unwrap_err(), said);
+        let error = read(&log("t,enc_a,enc_b,on", 1), "").unwrap_err();
+        assert!(
+            error.contains("the columns enc_a, enc_b are 0 or 1"),
+            "{error}"
+        );
         for (header, level) in [("t,s1,s2,on", 2), ("t,s1,s2,pos", 1)] {
             let error = read(&log(header, level), "").unwrap_err();
             assert!(error.contains("no column counts_large; found: "), "{error}");

@@ -16,6 +16,7 @@ use super::separator::{Separator, comment, stamp};
 use super::units::Unit;
 pub(super) use search::{UNKNOWN, is_number};
 use search::{is_content, named, numbers, probable, two_levels};
+pub(super) use stating::{POSITIONS, TIMES, has};
 use unit_row::UnitRow;
 
 /// Number of the first lines among which the header is searched.

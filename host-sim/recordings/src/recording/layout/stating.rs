@@ -6,8 +6,8 @@ use super::super::options::Column;
 use super::{Layout, Place};
 
 /// Parts of the names of positions, and of times.
-const POSITIONS: &[&str] = &["counts", "enc", "pos", "angle", "theta"];
-const TIMES: &[&str] = &["time", "stamp"];
+pub(in super::super) const POSITIONS: &[&str] = &["counts", "enc", "pos", "angle", "theta"];
+pub(in super::super) const TIMES: &[&str] = &["time", "stamp"];
 
 /// Parts of the names of what is derived from a position.
 const DERIVED: &[&str] = &["vel", "speed", "omega", "acc"];
@@ -20,7 +20,8 @@ const INDIRECT: &[&str] = &[
 /// The end of a name that counts anything: samples, errors, or an encoder's lines.
 const COUNT: &str = "count";
 
-fn has(name: &str, words: &[&str]) -> bool {
+/// Whether a part of `name` is one of the `words`.
+pub(in super::super) fn has(name: &str, words: &[&str]) -> bool {
     words.iter().any(|word| name.contains(word))
 }
 
