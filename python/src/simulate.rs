@@ -119,7 +119,8 @@ pub(crate) fn decode<'py>(
     row_rate: Option<f64>,
     counts_per_rev: Option<u32>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let device = self::device(None, counts_per_rev).map_err(value_error)?;
+    // In the range of a device.
+    device(None, counts_per_rev).map_err(value_error)?;
     std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
     let mut recording = interruptible(py, |_| {
         let capture = Capture::new(&columns, lines, row_rate, checked_rate(rate)?)?;
@@ -130,9 +131,7 @@ pub(crate) fn decode<'py>(
     let notes: Vec<_> = notes.iter().map(|note| in_python(note)).collect();
     let fields = fields(py, recording)?;
     fields.set_item("name", short_name(&path))?;
-    if counts_per_rev.is_some() {
-        fields.set_item("counts_per_rev", device.stages.large.counts_per_rev)?;
-    }
+    fields.set_item("counts_per_rev", counts_per_rev)?;
     fields.set_item("notes", notes)?;
     Ok(fields)
 }

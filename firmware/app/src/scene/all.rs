@@ -101,6 +101,7 @@ impl Core {
     }
 
     /// One tick.
+    // As `Control::step`.
     #[cfg_attr(feature = "large-adaptive", inline(always))]
     pub fn step(&mut self, sample: &Sample) -> Action {
         match cfg!(feature = "large-adaptive") {
