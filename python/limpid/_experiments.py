@@ -127,8 +127,8 @@ def decode(
     Parameters
     ----------
     path
-        A table of a logic analyser: a row has the levels 0 or 1 of the lines from its time on. It may be
-        compressed by gzip.
+        A file of a logic analyser: a table (CSV) where a row has the levels 0 or 1 of the lines from its time
+        on, or a value change dump (VCD). It may be compressed by gzip.
     rate
         Rate of the rows of the recording, Hz, from 10 to 100000.
     lines

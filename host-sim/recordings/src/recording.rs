@@ -38,6 +38,7 @@ mod text;
 mod thousands;
 mod times;
 mod units;
+mod value_changes;
 mod write;
 
 use std::io::Read;

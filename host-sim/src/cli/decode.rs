@@ -15,9 +15,9 @@ use super::page::working;
 
 #[derive(Debug, Args)]
 pub(super) struct Decode {
-    /// Capture of the encoder's lines A and B, or of three Hall lines: a row has the levels 0 or 1 of the
-    /// lines from its time on, as CSV of a logic analyser; - is standard input
-    #[arg(value_name = "CAPTURE.csv")]
+    /// Capture of the encoder's lines A and B, or of three Hall lines, by a logic analyser: CSV, where a row has
+    /// the levels 0 or 1 of the lines from its time on, or VCD; - is standard input
+    #[arg(value_name = "CAPTURE")]
     capture: PathBuf,
     /// Names or numbers of the columns of the lines; in the other order counts have the other sign
     /// [default: the only two columns that are no time]

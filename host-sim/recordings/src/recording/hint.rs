@@ -5,6 +5,7 @@ use super::formats::Ambiguous;
 use super::header::short;
 use super::layout::{Layout, POSITIONS, Places, TIMES, has};
 use super::options::Column;
+use super::steps::to_digits;
 use super::units::Quantity;
 
 /// Characters of the longest name that a hint repeats; a longer one is called by its number.
@@ -112,6 +113,16 @@ pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
         .or_else(|| captured(layout))
         .or_else(|| levels(layout))
         .or_else(|| barred(layout))
+        .or_else(|| untimed(layout))
+}
+
+/// Rows without a time whose rate is stated.
+fn untimed(layout: &Layout) -> Option<String> {
+    let hz = to_digits(layout.row_rate_hz?, 6);
+    Some(format!(
+        "no column t: the rows have no time, and the header states {hz} rows a second; give this rate with \
+         --row-rate {hz}"
+    ))
 }
 
 /// Fields between bars.

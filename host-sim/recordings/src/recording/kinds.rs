@@ -3,7 +3,7 @@
 use terminal::failure::Failure;
 
 /// First bytes of a file, what it is, and the remedy.
-const KINDS: [(&[u8], &str, &str); 8] = [
+const KINDS: [(&[u8], &str, &str); 13] = [
     (b"PK\x03\x04", "a zip file", "unpack it with unzip -p"),
     (
         b"\x28\xB5\x2F\xFD",
@@ -16,6 +16,19 @@ const KINDS: [(&[u8], &str, &str); 8] = [
     (b"\x89HDF", "an HDF5 file", "write it as CSV"),
     (b"MATLAB 5.0 MAT", "a file of MATLAB", "write it as CSV"),
     (b"\x89MCAP", "an MCAP file", "write it as CSV"),
+    (b"TDSm", "a TDMS file of LabVIEW", "write it as CSV or LVM"),
+    (
+        b"<SALEAE>",
+        "a binary export of Logic 2",
+        "export the lines as CSV",
+    ),
+    (b"#ROSBAG", "a bag of ROS 1", "write a topic as CSV"),
+    (
+        b"SQLite format 3",
+        "an SQLite database, as a bag of ROS 2",
+        "write a topic as CSV",
+    ),
+    (b"ULog", "a ULog of PX4", "write it as CSV with ulog2csv"),
 ];
 
 /// Bytes that are searched for control characters.
@@ -57,6 +70,9 @@ mod tests {
             "r.csv: line 1: this is a zip file; unpack it with unzip -p, or give the text as -"
         );
         assert!(error(b"\x28\xB5\x2F\xFDxyz").contains("unpack it with zstd -dc"));
+        assert!(
+            error(b"#ROSBAG V2.0\n").contains("this is a bag of ROS 1; write a topic as CSV, or")
+        );
         let binary: Vec<u8> = (0..=255).collect();
         assert_eq!(
             error(&binary),

@@ -1,5 +1,6 @@
 //! Layout of a text: its separator, its header, and the columns that are read.
 
+mod labview;
 mod search;
 mod stating;
 mod unit_row;
@@ -42,6 +43,10 @@ pub(super) struct Layout {
     pub(super) first_row: String,
     /// Whether the lines begin with the time stamps of a serial monitor.
     pub(super) is_stamped: bool,
+    /// Whether a row may end with a remark, which is not read.
+    pub(super) remarks: bool,
+    /// The rate of rows without a time as the text states it, Hz.
+    pub(super) row_rate_hz: Option<f64>,
 }
 
 impl Layout {
@@ -74,6 +79,9 @@ impl Layout {
                 is_named,
             )
         };
+        if let Some(layout) = Self::labview(&lines) {
+            return Ok(layout);
+        }
         let (layout, is_named) = match UnitRow::find(&lines) {
             None => search(&lines),
             Some(units) => {
@@ -111,6 +119,8 @@ impl Layout {
             two_levels: Vec::new(),
             first_row: String::new(),
             is_stamped: false,
+            remarks: false,
+            row_rate_hz: None,
         }
     }
 

@@ -18,6 +18,7 @@ use super::options::ReadOptions;
 use super::row::Row;
 use super::separator::Separator;
 use super::text::Text;
+use super::value_changes::{self, ValueChanges};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
@@ -28,6 +29,7 @@ enum Source<'a> {
     Json(Json<Input<'a>>),
     Labelled(Labelled<Input<'a>>),
     Long(Box<Long<Input<'a>>>),
+    ValueChanges(Box<ValueChanges<Input<'a>>>),
 }
 
 /// The rows of the log called `name` in messages.
@@ -64,7 +66,10 @@ impl<'a> Records<'a> {
             is_stamped: is_stamped(&text),
             ..Layout::header(Separator::Comma, names.to_vec(), 0)
         };
-        let (layout, source) = if let Some(begin) = json::Begin::of(&text, name)? {
+        let (layout, source) = if value_changes::is_begin(&text) {
+            let (changes, layout) = ValueChanges::open(input, name)?;
+            (layout, Source::ValueChanges(Box::new(changes)))
+        } else if let Some(begin) = json::Begin::of(&text, name)? {
             let layout = named(&begin.names, begin.line);
             (layout, Source::Json(Json::new(input, end, &begin)))
         } else if let Some(begin) = labelled::Begin::of(&text) {
@@ -101,6 +106,7 @@ impl<'a> Records<'a> {
             Source::Labelled(rows) => rows.read(&mut self.record, self.name)?,
             Source::Long(rows) => rows.read(&mut self.record, self.name)?,
             Source::Text(rows) => rows.read(&mut self.record, self.name)?,
+            Source::ValueChanges(changes) => changes.read(&mut self.record, self.name)?,
         };
         let Some(line) = line else {
             return Ok(None);
@@ -110,8 +116,8 @@ impl<'a> Records<'a> {
             line,
             record: &self.record,
             is_cut: match &self.source {
-                // A cut object is refused.
-                Source::Json(_) => false,
+                // A cut object or command is refused.
+                Source::Json(_) | Source::ValueChanges(_) => false,
                 Source::Labelled(rows) => rows.is_cut(line),
                 Source::Long(rows) => rows.is_cut,
                 Source::Text(rows) => rows.is_cut(line),
@@ -120,7 +126,7 @@ impl<'a> Records<'a> {
                 Source::Json(json) => &json.places.marks,
                 Source::Labelled(rows) => &rows.places.marks,
                 Source::Long(rows) => &rows.places.marks,
-                Source::Text(_) => &[],
+                Source::Text(_) | Source::ValueChanges(_) => &[],
             },
             names: &self.layout.names,
             is_first: self.layout.has_header() && line == self.layout.line + 1,

@@ -20,6 +20,8 @@ pub(super) struct Text<R> {
     /// Line of the header; 0 without one.
     header: u64,
     columns: usize,
+    /// Whether one more field may end a row.
+    remarks: bool,
 }
 
 impl<R: BufRead> Text<R> {
@@ -33,6 +35,7 @@ impl<R: BufRead> Text<R> {
             separator: layout.separator,
             header: layout.line,
             columns,
+            remarks: layout.remarks,
         }
     }
 
@@ -60,8 +63,9 @@ impl<R: BufRead> Text<R> {
             return Ok(None);
         };
         let (fields, columns) = (record.len(), self.columns);
-        let ends_with_separator = fields == columns + 1 && record[columns].trim_ascii().is_empty();
-        match fields == columns || ends_with_separator {
+        let may_end =
+            fields == columns + 1 && (self.remarks || record[columns].trim_ascii().is_empty());
+        match fields == columns || may_end {
             true => Ok(Some(line)),
             false => Err(Failure::Input(self.ragged(line, fields, name))),
         }

@@ -142,6 +142,18 @@ mod tests {
         }
     }
 
+    /// The error of a square wave grows with the shift in proportion: no parabola leads to its minimum.
+    #[test]
+    fn delay_of_a_square_wave_is_found() {
+        let wave = |i: i32| if i.rem_euclid(800) < 400 { 1.0 } else { -1.0 };
+        let truth: Vec<f64> = (0..4000).map(wave).collect();
+        for by in [-97, -5, -1, 0, 1, 2, 5, 97] {
+            let estimate: Vec<f32> = (0..4000).map(|i| wave(i - by) as f32).collect();
+            assert_eq!(samples(&truth, &estimate, 100), Some(f64::from(by)));
+        }
+        assert_eq!(vertex(3.0, 2.0, 1.0), 0.0);
+    }
+
     #[test]
     fn noise_changes_the_delay_little() {
         let (truth, mut estimate) = lagging(4.0, 4000);

@@ -199,6 +199,25 @@ mod tests {
         assert_eq!([score.delay_ms, score.noise_rad_s], [None; 2]);
     }
 
+    /// A section at rest has no delay, and one of twice the speed has four times the weight.
+    #[test]
+    fn delays_of_sections_are_weighted_with_the_slope_of_the_truth() {
+        let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
+        let mut sections = Sections::default();
+        for (speed, delay_ms) in [(1.0, 3.0), (2.0, 8.0)] {
+            let truth: Vec<f64> = (0..1000).map(|k| speed * f64::from(k)).collect();
+            let estimate: Vec<f32> = truth.iter().map(|w| *w as f32).collect();
+            let truth = Truth::new(&truth, 1000.0, interval, Wanted::ALL).unwrap();
+            let score = Score {
+                delay_ms: Some(delay_ms),
+                ..truth.score(&estimate)
+            };
+            sections.add(&truth, &estimate, score, true);
+        }
+        let delay = sections.score().delay_ms.unwrap();
+        assert!((delay - 7.0).abs() < 1e-12, "{delay}");
+    }
+
     #[test]
     fn share_within_2_sigma_counts_every_scored_sample_once() {
         let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);

@@ -62,6 +62,16 @@ fn outside_is_the_share_of_samples_after_the_start() {
     near(s.max_rad_s, 0.564_583_3, 1e-6);
 }
 
+/// A force of exactly the threshold is not felt.
+#[test]
+fn the_bound_of_the_interval_is_inside() {
+    let interval = HapticInterval::new(0.0, 0.5, 1.0, 0.25);
+    let truth = vec![0.0; 2000];
+    let truth = Truth::new(&truth, RATE_HZ, interval, Wanted::ALL).unwrap();
+    near(truth.score(&vec![1.0; 2000]).outside, 0.0, 0.0);
+    near(truth.score(&vec![1.001; 2000]).outside, 1.0, 0.0);
+}
+
 #[test]
 fn force_follows_from_the_rms_error() {
     // One of 1000 scored samples is wrong by 3 rad/s.

@@ -46,6 +46,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("serial-monitor-times.txt", "--row-rate 1000"),
     ("serial-plotter.txt", ""),
     ("plotjuggler.csv", ""),
+    ("labview.lvm", ""),
 ];
 
 #[test]

@@ -1,4 +1,5 @@
 mod hall;
+mod value_changes;
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;

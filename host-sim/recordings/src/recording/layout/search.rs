@@ -93,16 +93,13 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
 
 /// The layout of a text without names, whose first row is at an index.
 fn without_header(separator: Separator, fields: usize, (index, row): (usize, &str)) -> Layout {
+    let numbers = (1..=fields).map(|number| number.to_string());
     Layout {
-        separator,
-        names: (1..=fields).map(|number| number.to_string()).collect(),
-        units: Vec::new(),
+        names: numbers.collect(),
         line: 0,
         skip: index as u64,
-        searched: None,
-        two_levels: Vec::new(),
         first_row: row.trim().to_owned(),
-        is_stamped: false,
+        ..Layout::header(separator, Vec::new(), 0)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::super::endings::Ending;
 use super::super::hint;
 use super::super::options::Column;
-use super::{Layout, Place};
+use super::{Layout, Place, labview};
 
 /// Parts of the names of positions, and of times.
 pub(in super::super) const POSITIONS: &[&str] = &["counts", "enc", "pos", "angle", "theta"];
@@ -45,6 +45,7 @@ impl Layout {
                 (Column::T, Ending::Unit(_)) if lower.starts_with('t') => {
                     is_named || !lower[1..].starts_with(char::is_alphanumeric)
                 }
+                (Column::T, Ending::Unit(_)) if name == labview::X_VALUE => true,
                 (Column::T, _) => is_named,
                 _ => !has(&lower, DERIVED) && (is_named || lower.ends_with(COUNT)),
             }
