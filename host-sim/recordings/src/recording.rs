@@ -10,6 +10,7 @@ mod encoder;
 mod endings;
 mod fields;
 mod formats;
+mod grid;
 mod header;
 mod hint;
 mod json;

@@ -3,14 +3,19 @@
 use estimator_core::Count;
 use terminal::failure::Failure;
 
+use super::grid::Grid;
 use super::layout::Place;
 use super::numbers::shown;
 use super::options::{Column, ReadOptions};
 use super::row::Row;
+use super::steps::to_digits;
 use super::units::Scale;
 
 /// Distance from a whole count from which positions are reported as rounded.
 const ROUNDED: f64 = 0.25;
+
+/// Counts of the log in a step of its positions from which the step is reported.
+const COARSE: f64 = 1.5;
 
 /// Number of changes between 0 and 1 from which a column may be one line of an encoder. Fewer are those of a
 /// shaft that is hardly turned.
@@ -24,8 +29,15 @@ pub(super) struct Encoder {
     pub(super) last: Option<u32>,
     /// The reading of the latest row: counts before they are unwrapped.
     pub(super) raw: i64,
-    /// Largest distance of a position from a whole count.
+    /// Distance of the first position from a whole count: where the zero of the angle is between two counts.
+    origin: Option<f64>,
+    /// Largest distance of a position from a whole number of counts behind the first one.
     rounded: f64,
+    /// The latest position, counts with a fraction, and the changes of the positions.
+    exact: Option<f64>,
+    grid: Grid,
+    /// Whether the column has counts, not an angle.
+    is_counts: bool,
     /// Number of rows whose reading differs from the row before.
     changes: usize,
     /// Whether a reading was neither 0 nor 1.
@@ -42,8 +54,10 @@ impl Encoder {
         motor: usize,
     ) -> Result<(), Failure> {
         let column = at.column.name();
-        let raw = match at.unit.scale {
+        self.is_counts = true;
+        let (raw, exact) = match at.unit.scale {
             Scale::PerRev(per_rev) => {
+                self.is_counts = false;
                 let position = row.number(column, at.place)?;
                 let exact = position * f64::from(options.counts_per_rev[motor]) / per_rev;
                 if exact.abs() > 9e15 {
@@ -53,12 +67,19 @@ impl Encoder {
                         &format!("{position} is too large; correct the field, or remove the row"),
                     ));
                 }
-                let whole = (exact + 0.5).floor();
-                self.rounded = self.rounded.max((exact - whole).abs());
-                whole as i64
+                let origin = *self.origin.get_or_insert(exact - (exact + 0.5).floor());
+                let whole = (exact - origin + 0.5).floor();
+                self.rounded = self.rounded.max((exact - origin - whole).abs());
+                (whole as i64, exact)
             }
-            _ => row.count(column, at.place)?,
+            _ => {
+                let raw = row.count(column, at.place)?;
+                (raw, raw as f64)
+            }
         };
+        if let Some(before) = self.exact.replace(exact) {
+            self.grid.add(exact - before);
+        }
         self.changes += usize::from(self.last.is_some() && raw != self.raw);
         self.has_counts |= !(0..=1).contains(&raw);
         self.raw = raw;
@@ -83,7 +104,7 @@ impl Encoder {
         Ok(())
     }
 
-    /// Notes on positions that are far from whole counts, and on a column that may hold no counts.
+    /// Notes on positions whose step is not that of a count, and on a column that may hold no counts.
     /// `motor` is the index of the encoder.
     pub(super) fn notes(
         &self,
@@ -91,15 +112,8 @@ impl Encoder {
         options: &ReadOptions,
     ) -> impl Iterator<Item = String> {
         let column = Column::COUNTS[motor].name();
-        let rounded = (self.rounded > ROUNDED).then(|| {
-            format!(
-                "{column}: positions are up to {:.2} counts from a whole count with {} counts/rev and are rounded to \
-                 the nearest; if the encoder has more counts, give them {}",
-                self.rounded,
-                options.counts_per_rev[motor],
-                options.counts_given[motor]
-            )
-        });
+        let step = self.stepped(options.counts_per_rev[motor], &options.counts_given[motor]);
+        let step = step.map(|what| format!("{column}: {what}"));
         let line = (!self.has_counts && self.changes >= LINE).then(|| {
             format!(
                 "{column} is 0 or 1 in all rows, and changes {} times: if it is one line of a quadrature encoder, \
@@ -107,7 +121,40 @@ impl Encoder {
                 self.changes
             )
         });
-        rounded.into_iter().chain(line)
+        step.into_iter().chain(line)
+    }
+
+    /// What is wrong with `counts_per_rev`, which a user gives as `given` says, by the step of the positions.
+    fn stepped(&self, counts_per_rev: u32, given: &str) -> Option<String> {
+        let step = self.grid.step();
+        let step = step.filter(|step| !self.is_counts || step.fract() == 0.0);
+        let coarse = step.filter(|step| *step >= COARSE);
+        if let (Some(step), true) = (coarse, self.is_counts) {
+            return Some(format!(
+                "the count changes by multiples of {step} alone: divide the column and the counts per revolution by \
+                 {step}, because the estimators take each count for one of the encoder"
+            ));
+        }
+        let off = match (coarse, self.rounded > ROUNDED) {
+            (_, true) => format!(
+                "positions are up to {:.2} counts from whole counts with {counts_per_rev} counts/rev and are rounded \
+                 to the nearest",
+                self.rounded
+            ),
+            (Some(step), false) => format!(
+                "positions change by multiples of {} counts alone with {counts_per_rev} counts/rev",
+                shown(to_digits(step, 4))
+            ),
+            (None, false) => return None,
+        };
+        let own = step.map(|step| (f64::from(counts_per_rev) / step).round());
+        Some(match own {
+            Some(own) if own >= 2.0 => format!(
+                "{off}; they are multiples of 1/{own} revolution: if these are the encoder's counts, give {own} \
+                 counts/rev {given}"
+            ),
+            _ => format!("{off}; if the encoder has more counts, give them {given}"),
+        })
     }
 }
 
@@ -166,12 +213,80 @@ mod tests {
         let recording = read(&rows, degrees, &[]).unwrap();
         assert_eq!(rounded(&recording), 1);
         let note =
-            "counts_large: positions are up to 0.34 counts from a whole count with 4096 counts/rev";
+            "counts_large: positions are up to 0.34 counts from whole counts with 4096 counts/rev";
         assert!(
             recording.notes.iter().any(|n| n.starts_with(note)),
             "{:?}",
             recording.notes
         );
+    }
+
+    /// Angles from a zero between two counts, with as many digits as a float has.
+    #[test]
+    fn zero_of_an_angle_is_anywhere() {
+        for zero in [0.0, 0.25, 0.5, 0.7, -0.5] {
+            let angle = |k: i32| f64::from(((f64::from(k) + zero) * 360.0 / 4096.0) as f32);
+            let angles: Vec<_> = (0..2000).map(|k| angle(k - 700).to_string()).collect();
+            let rows: Vec<_> = angles.iter().map(|angle| (angle.as_str(), "0")).collect();
+            let recording = read(&rows, "counts_large=counts_large:deg", &[]).unwrap();
+            let large = counts(&recording.trace.counts_large);
+            assert!(
+                large.windows(2).all(|pair| pair[1] - pair[0] == 1),
+                "{zero}"
+            );
+            assert!(
+                !recording
+                    .notes
+                    .iter()
+                    .any(|note| note.contains("positions"))
+            );
+        }
+    }
+
+    /// A swing of 1100 steps, as an encoder of `steps` a revolution gives it.
+    fn swing(steps: f64, written: impl Fn(f64) -> String, columns: &str) -> Vec<String> {
+        let swing = (0..3000).map(|k| (1100.0 * (f64::from(k) * 0.01).sin()).floor());
+        let positions: Vec<_> = swing.map(|step| written(step / steps)).collect();
+        let rows: Vec<_> = positions.iter().map(|at| (at.as_str(), "0")).collect();
+        let notes = read(&rows, columns, &[]).unwrap().notes.into_iter();
+        notes
+            .filter(|note| note.starts_with("counts_large: "))
+            .collect()
+    }
+
+    #[test]
+    fn counts_per_revolution_are_those_of_the_steps_of_the_angle() {
+        let degrees = |revolutions: f64| (360.0 * revolutions).to_string();
+        let option = "counts_large=counts_large:deg";
+        let given = "give 2156 counts/rev with --counts-per-rev, or as large.counts_per_rev in the file of --device";
+        let off = "counts_large: positions are up to 0.50 counts from whole counts with 4096 counts/rev and are \
+                   rounded to the nearest; they are multiples of 1/2156 revolution: if these are the encoder's \
+                   counts, ";
+        assert_eq!(swing(2155.86, degrees, option), [format!("{off}{given}")]);
+        let coarse = "counts_large: positions change by multiples of 4 counts alone with 4096 counts/rev; they are \
+                      multiples of 1/1024 revolution: if these are the encoder's counts, ";
+        let given = given.replace("2156", "1024");
+        assert_eq!(swing(1024.0, degrees, option), [format!("{coarse}{given}")]);
+        assert!(swing(4096.0, degrees, option).is_empty());
+        // A quantity that has no steps.
+        let smooth = |revolutions: f64| format!("{}", (7e4 * revolutions).sin());
+        let notes = swing(1024.0, smooth, option);
+        assert!(
+            notes[0].ends_with(
+                "if the encoder has more counts, give them with --counts-per-rev, or as \
+                                    large.counts_per_rev in the file of --device"
+            ),
+            "{notes:?}"
+        );
+    }
+
+    #[test]
+    fn counts_that_change_by_several_are_reported() {
+        let counts = |revolutions: f64| (4096.0 * revolutions).to_string();
+        let said = "counts_large: the count changes by multiples of 8 alone: divide the column and the counts per \
+                    revolution by 8, because the estimators take each count for one of the encoder";
+        assert_eq!(swing(512.0, counts, ""), [said]);
+        assert!(swing(4096.0, counts, "").is_empty());
     }
 
     #[test]

@@ -14,6 +14,9 @@ const LONGEST: usize = 80;
 /// Positions that a message lists.
 const LISTED: usize = 4;
 
+/// The unit of a position that has fractions, for an example.
+const ANGLE: &str = "rad";
+
 /// Parts of the names of what may be a position, and a time: more than say what they are.
 fn positions() -> Vec<&'static str> {
     [POSITIONS, &["count"]].concat()
@@ -90,6 +93,9 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
     let unit = match layout.ending(quantity, place) {
         // Of a name with another unit only its owner can say what the numbers are.
         Ending::Unit(_) | Ending::Unknown(_) => String::new(),
+        Ending::Nothing if quantity == Quantity::Position && layout.fractional.contains(&place) => {
+            format!(":{ANGLE}")
+        }
         Ending::Nothing => format!(":{}", example(quantity)),
     };
     (name != ours).then(|| format!("{ours}={}{unit}", theirs(layout, place)))
@@ -225,6 +231,20 @@ mod tests {
             assert!(error.contains("no column counts_large; found: "), "{error}");
         }
         assert!(read(&log("t,s1,s2,on", 1), "counts_large=s1").is_ok());
+    }
+
+    #[test]
+    fn position_with_fractions_is_taken_for_an_angle() {
+        for (rows, unit) in [
+            ("0;7\n1;8", "counts"),
+            ("0;7,0\n1;8", "counts"),
+            ("0;7\n1;8,5", "rad"),
+            ("0,5;7\n1;8", "counts"),
+        ] {
+            let error = read(&format!("time;position\n{rows}\n"), "").unwrap_err();
+            let said = format!("for example --column 't=time:s,counts_large=position:{unit}'");
+            assert!(error.contains(&said), "{rows}: {error}");
+        }
     }
 
     #[test]

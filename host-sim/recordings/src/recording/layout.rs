@@ -16,7 +16,7 @@ use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
 use super::units::Unit;
 pub(super) use search::{UNKNOWN, is_number};
-use search::{is_content, named, numbers, probable, two_levels};
+use search::{fractional, is_content, named, numbers, probable, two_levels};
 pub(super) use stating::{POSITIONS, TIMES, has};
 use unit_row::UnitRow;
 
@@ -39,6 +39,8 @@ pub(super) struct Layout {
     pub(super) searched: Option<String>,
     /// Places of the columns that are 0 or 1 in the first rows, and both.
     pub(super) two_levels: Vec<usize>,
+    /// Places of the columns that have a number with a fraction in the first rows.
+    pub(super) fractional: Vec<usize>,
     /// The first row of a text that has no header.
     pub(super) first_row: String,
     /// Whether the lines begin with the time stamps of a serial monitor.
@@ -80,7 +82,10 @@ impl Layout {
             )
         };
         if let Some(layout) = Self::labview(&lines) {
-            return Ok(layout);
+            return Ok(Self {
+                fractional: fractional(&layout, &lines),
+                ..layout
+            });
         }
         let (layout, is_named) = match UnitRow::find(&lines) {
             None => search(&lines),
@@ -100,6 +105,7 @@ impl Layout {
         Ok(Self {
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
+            fractional: fractional(&layout, &lines),
             ..layout
         })
     }
@@ -117,6 +123,7 @@ impl Layout {
             skip: index as u64 + 1,
             searched: None,
             two_levels: Vec::new(),
+            fractional: Vec::new(),
             first_row: String::new(),
             is_stamped: false,
             remarks: false,

@@ -81,7 +81,9 @@ fn positions_off_whole_counts_are_reported() {
     let device = "--column counts_large=angle:deg --device coarse.toml";
     let (_, notes) = replay(&folder, "absolute-deg.csv", device);
     let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
-    let said = "counts from a whole count with 1000 counts/rev and are rounded to the nearest";
+    let said = "counts from whole counts with 1000 counts/rev and are rounded to the nearest; they are multiples of \
+                1/4096 revolution: if these are the encoder's counts, give 4096 counts/rev with --counts-per-rev, or as \
+                large.counts_per_rev in the file of --device";
     assert!(notes.contains(said), "{notes}");
 }
 

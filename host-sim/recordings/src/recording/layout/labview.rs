@@ -116,6 +116,10 @@ mod tests {
         assert_eq!(current.trace.current.unwrap()[..2], [0.5; 2]);
         let degrees = read(&log("One", "deg", '.'), "").unwrap();
         assert_eq!(degrees.trace.counts_large[..2], [0, 34]);
+        let spectrum =
+            log("One", "counts", '.').replace("X_Dimension\tTime", "X_Dimension\tFrequency");
+        let error = read(&spectrum, "").unwrap_err();
+        assert!(error.contains("no column t; found: X_Value; "), "{error}");
         // A file without units.
         let none = log("One", "", '.');
         let error = read(&none, "").unwrap_err();

@@ -134,11 +134,16 @@ fn end_with(separator: Separator, lines: &[&str]) -> bool {
 /// A level that a logic analyser does not know.
 pub(in super::super) const UNKNOWN: &str = "X";
 
-/// Places of the columns of `layout` that are 0 or 1 in the rows among `lines`, and both.
-pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
+/// The fields of the rows of `layout` among `lines`.
+fn rows(layout: &Layout, lines: &[&str]) -> Vec<Vec<String>> {
     let rows = lines.iter().skip(layout.skip as usize);
     let rows = rows.filter(|line| is_content(line) && comment(line).is_none());
-    let rows: Vec<_> = rows.map(|line| layout.separator.split(line)).collect();
+    rows.map(|line| layout.separator.split(line)).collect()
+}
+
+/// Places of the columns of `layout` that are 0 or 1 in the rows among `lines`, and both.
+pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
+    let rows = rows(layout, lines);
     let has_two = |place: &usize| {
         let field = |row: &Vec<String>| row.get(*place).cloned();
         let levels: BTreeSet<_> = rows.iter().map(field).collect();
@@ -147,6 +152,20 @@ pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
             .eq(["0", "1"].map(|level| Some(level.to_owned())))
     };
     (0..layout.names.len()).filter(has_two).collect()
+}
+
+/// Places of the columns of `layout` that have a number with a fraction in the rows among `lines`.
+pub(super) fn fractional(layout: &Layout, lines: &[&str]) -> Vec<usize> {
+    let rows = rows(layout, lines);
+    let is_fraction = |field: &String| {
+        let number = number(field, layout.separator);
+        number.is_some_and(|number| number.fract() != 0.0)
+    };
+    let has_fraction = |place: &usize| {
+        rows.iter()
+            .any(|row| row.get(*place).is_some_and(is_fraction))
+    };
+    (0..layout.names.len()).filter(has_fraction).collect()
 }
 
 /// Separator and number of fields of a line of numbers.
@@ -160,11 +179,15 @@ pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {
     })
 }
 
+/// The number that a field is.
+fn number(field: &str, separator: Separator) -> Option<f64> {
+    match separator.allows_decimal_comma() {
+        true => field.replacen(',', ".", 1).parse().ok(),
+        false => field.parse().ok(),
+    }
+}
+
 /// Whether a field is a number or a time.
 pub(in super::super) fn is_number(field: &str, separator: Separator) -> bool {
-    let is_number = match separator.allows_decimal_comma() {
-        true => field.replacen(',', ".", 1).parse::<f64>().is_ok(),
-        false => field.parse::<f64>().is_ok(),
-    };
-    is_number || Moment::parse(field).is_some()
+    number(field, separator).is_some() || Moment::parse(field).is_some()
 }

@@ -1,4 +1,5 @@
 use super::{DURATION, changes, check, decode};
+use crate::recording::read_log;
 
 /// The dump of the motion as a logic analyser writes it, with ticks of `tick_ns`.
 fn dump(timescale: &str, tick_ns: f64) -> String {
@@ -57,6 +58,18 @@ fn variables_of_a_simulation_are_named_by_their_scopes() {
     let error = decode(&text, "", "", None).unwrap_err();
     let said = "found: time [ns]; line[0]; line[1]; n; r; s; top.part.phase; top.ot ...";
     assert!(error.contains(said), "{error}");
+}
+
+/// A dump has no position, unless a variable is one.
+#[test]
+fn bits_of_a_dump_lead_to_decode() {
+    let text = dump("1 us", 1e3).replace("D0", "a").replace("D1", "b");
+    let text = text.replace("$var wire 1 # D2", "$var wire 8 # n");
+    let error = read_log(&text, "").unwrap_err();
+    let said = "the columns a, b are 0 or 1 in the first rows; if they are the lines of an encoder";
+    assert!(error.contains(said), "{error}");
+    let recording = read_log(&text, "counts_large=n").unwrap();
+    assert_eq!(recording.t[1], 0.000_558);
 }
 
 #[test]
