@@ -69,8 +69,8 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// edge       H = [1, -t, t²/2], t the age of the edge    e = boundary - H x
 ///            S = H P Hᵀ + R    K = P Hᵀ / S              x += K e    P -= K S Kᵀ
 ///            rounding: S has 1e-6 P_00 more, and P_11 keeps 1e-6 of itself
-/// interval   the position lies in the quantisation interval of the count: mean and variance of the
-///            truncated Gaussian; with stamps, of x_0 plus a noise of variance R. In a count that is not
+/// interval   the position plus a noise of variance R lies in the quantisation interval of the count: mean and
+///            variance of the truncated Gaussian, whose mean shifts by s. In a count that is not
 ///            new, what exceeds the truncation by an end at √3 standard deviations. Rounding: x_0 has
 ///            1e-6 (P_00 + 1 count²) more for the truncation, and P_11 keeps 1e-6 of itself
 /// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
@@ -78,8 +78,11 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// surprise   every member is 8 standard deviations off, e² > 64 S: w = 1 of the last one, 0 of the others;
 ///            40: its P_11 += e² / 10 and P_22 += e² / 100, e² at most 1e4 counts²
 /// restart    Σ is no positive finite number: the bank starts anew
-/// noise      R = R (1 - 0.1 ρ)          ρ = e e' / S within ±1, e' of the edge before; R within
-///            3e-4 and 0.1 counts²
+/// noise      with stamps R = R (1 - 0.1 ρ)       ρ = Σ w e Σ w' e' / Σ w S within ±1, e' of the edge before; R
+///            within 3e-4 and 0.1 counts²
+///            without R = R + 0.03 R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s = Σ w s, s' of the sample before;
+///            V = P_00 + R of the last member; s s' within ±V, and 0 where it is the first one below 0; R within
+///            1e-5 and 1e4 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
 /// ```
 /// A density that fills the interval is uniform, and its ends are √3 deviations from its mean. The tails of
@@ -88,7 +91,8 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// c is the probability that q changes, one a second. The density of e has the tails of a Student
 /// distribution, `S^-1/2 (1 + e² / 32 S)^-16`. After a calm motion all members are so sure that an impact
 /// surprises them alike, and the ratios of the likelihoods say nothing: hence the surprise. The innovations
-/// of an optimal filter are white: if successive ones have opposite signs, R is too small.
+/// of an optimal filter are white: if successive ones have opposite signs, R is too small. Without stamps R
+/// is the noise of the counts, as a magnetic encoder has it: it needs no parameter either.
 ///
 /// Rest: 0.3 s after the last change of the count and the last edge, v and a become 0 exactly, and stay
 /// 0 until the next change or edge. A shaft slower than 3.3 counts per second is taken for one at rest.
@@ -196,7 +200,7 @@ impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
     const NEEDS: Signals = S::NEEDS;
 
     fn start(&self, first: &Sample) -> ModelBankState<K> {
-        ModelBankState::start(first.count)
+        ModelBankState::start(first.count, S::NOISE)
     }
 
     fn update(&self, state: &mut ModelBankState<K>, sample: &Sample) -> CountsPerTick {
@@ -309,10 +313,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
                 }
                 state.correct_by_edge(&edge, ends)
             }
-            None => {
-                let noise = S::noise_of_ends(state.boundary_variance());
-                state.correct_by_interval(ends, noise)
-            }
+            None => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS),
         };
         let likelihood = state.weigh(&judged, over.change);
         if state.still >= self.rest {

@@ -90,7 +90,7 @@ mod tests {
         device.amplifier_lag = 0.0;
         let observer = ObserverDesign::new(&device, rate, &UNCERTAINTY).adaptive();
         let input = Followed(observer.build().unwrap());
-        let bank = ModelBankState::<3>::start(Count(0));
+        let bank = ModelBankState::<3>::start(Count(0), 1e-3);
         let motor = device.motor;
         // The velocity after a tick from rest: a torque over the damping, with the pole of both.
         let counts_per_tick = f64::from(motor.counts_per_rev) / core::f64::consts::TAU / rate.0;

@@ -24,6 +24,17 @@ pub(super) struct Member {
     pub(super) covariance: [f32; 6],
 }
 
+/// What the quantisation interval says about a member.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Correction {
+    /// Probability of the interval.
+    pub(super) likelihood: Likelihood,
+    /// Shift of the position with its noise, counts; 0 inside the interval.
+    pub(super) shift: f32,
+    /// Variance of the position with its noise, counts².
+    pub(super) variance: f32,
+}
+
 /// Innovation of an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Innovation {
@@ -103,19 +114,27 @@ impl Member {
         }
     }
 
-    /// Corrects by the knowledge that the position lies in its quantisation interval, whose ends are
-    /// known to the variance `noise` and have truncated `ends` before. Returns the probability of the interval.
+    /// Corrects by the knowledge that the position with a noise of the variance `noise` lies in its quantisation
+    /// interval, whose ends have truncated `ends` before.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> Likelihood {
+    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> Correction {
         let [p00, p01, p02, ..] = self.covariance;
         let variance = p00 * KEPT + LEAST_NOISE + noise;
         let Some(truncated) = truncate(self.position, variance, ends) else {
-            return Likelihood::CERTAIN;
+            return Correction {
+                likelihood: Likelihood::CERTAIN,
+                shift: 0.0,
+                variance,
+            };
         };
         let per_variance = 1.0 / variance;
         let removed = 1.0 - truncated.kept;
         self.correct([p00, p01, p02], per_variance, truncated.shift, removed);
-        truncated.likelihood
+        Correction {
+            likelihood: truncated.likelihood,
+            shift: truncated.shift,
+            variance,
+        }
     }
 }
 

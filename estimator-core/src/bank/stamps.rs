@@ -1,5 +1,6 @@
 //! Whether a bank reads edge time stamps.
 
+use super::state::LEAST_OF_COUNT;
 use crate::design::DesignError;
 use crate::edge_clock::{EdgeClock, FreshEdge};
 use crate::memory::memory;
@@ -12,15 +13,18 @@ pub trait Stamps: Sealed + Copy + PartialEq {
     /// The parts of a sample that are read.
     const NEEDS: Signals;
 
+    /// Whether the noise R follows from counts. That of the boundaries follows from their stamps.
+    #[doc(hidden)]
+    const LEARNS_FROM_COUNTS: bool;
+
+    /// R at the start, counts².
+    #[doc(hidden)]
+    const NOISE: f32;
+
     /// The edge that came within the last `period` control periods.
     #[doc(hidden)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
     fn fresh_within(&self, sample: &Sample, period: f32) -> Option<FreshEdge>;
-
-    /// The variance of the ends of a quantisation interval, counts², where that of a boundary is
-    /// `boundary`. Counts alone do not tell it.
-    #[doc(hidden)]
-    fn noise_of_ends(boundary: f32) -> f32;
 }
 
 /// Counts alone.
@@ -35,16 +39,14 @@ impl Sealed for NoStamps {}
 impl Stamps for NoStamps {
     const NEEDS: Signals = Signals::COUNT;
 
+    const LEARNS_FROM_COUNTS: bool = true;
+
+    const NOISE: f32 = LEAST_OF_COUNT;
+
     #[inline(always)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
     fn fresh_within(&self, _: &Sample, _: f32) -> Option<FreshEdge> {
         None
-    }
-
-    #[inline(always)]
-    fn noise_of_ends(_: f32) -> f32 {
-        // Adding -0 changes no number and costs no instruction; adding 0 changes -0.
-        -0.0
     }
 }
 
@@ -74,14 +76,13 @@ impl Stamps for Stamped {
         ..Signals::COUNT
     };
 
+    const LEARNS_FROM_COUNTS: bool = false;
+
+    const NOISE: f32 = 1e-3;
+
     #[inline(always)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
     fn fresh_within(&self, sample: &Sample, period: f32) -> Option<FreshEdge> {
         self.clock.fresh_within(sample, period)
-    }
-
-    #[inline(always)]
-    fn noise_of_ends(boundary: f32) -> f32 {
-        boundary
     }
 }

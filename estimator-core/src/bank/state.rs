@@ -17,15 +17,17 @@ pub struct ModelBankState<const K: usize> {
     pub(super) still: u32,
     /// Whether the shaft is at rest.
     pub(super) resting: bool,
-    members: [Member; K],
+    pub(super) members: [Member; K],
     /// Weights of the members; their sum is 1.
     weights: [f32; K],
     /// Rung of the first member.
     rung: u32,
-    /// Variance R of the position of a boundary, counts².
-    boundary: f32,
-    /// Innovation of the edge before, counts.
+    /// Variance R of the noise of a boundary, or of a count without stamps, counts².
+    pub(super) noise: f32,
+    /// Innovation of the edge, or shift by the count, before, counts.
     innovation: f32,
+    /// Whether the two shifts before had opposite signs.
+    alternates: bool,
 }
 
 /// A member with less weight is reset.
@@ -59,10 +61,13 @@ const fn divisor(deviations: f32) -> f32 {
 /// Weight of a new member.
 const NEW_WEIGHT: f32 = 0.2;
 
-/// R at the start, and its range, counts².
-const BOUNDARY: f32 = 1e-3;
-const LEAST_BOUNDARY: f32 = 3e-4;
-const LARGEST_BOUNDARY: f32 = 0.1;
+/// Range of R of a boundary, counts².
+const LEAST_OF_BOUNDARY: f32 = 3e-4;
+const LARGEST_OF_BOUNDARY: f32 = 0.1;
+
+/// Range of R of a count, counts².
+pub(super) const LEAST_OF_COUNT: f32 = 1e-5;
+const LARGEST_OF_COUNT: f32 = 1e4;
 
 /// What a measurement says about the members.
 pub(super) struct Judged<const K: usize> {
@@ -74,11 +79,20 @@ pub(super) struct Judged<const K: usize> {
     pub(super) off: f32,
 }
 
-/// Change of R by an edge.
-const BOUNDARY_GAIN: f32 = 0.1;
+/// Change of R by an edge, in R.
+const GAIN_OF_EDGE: f32 = 0.1;
+
+/// Change of R by a count: in the product of two shifts, and in R by the size of a shift.
+const GAIN_OF_PRODUCT: f32 = 0.02;
+const GAIN_OF_SIZE: f32 = 0.03;
+
+/// Square of a shift over its variance at which R is right, and the largest one that counts.
+const USUAL: f32 = 0.5;
+const LARGEST: f32 = 1.5;
 
 impl<const K: usize> ModelBankState<K> {
-    pub(super) const fn start(anchor: Count) -> Self {
+    /// The state at the count `anchor`, with the variance R = `noise`.
+    pub(super) const fn start(anchor: Count, noise: f32) -> Self {
         Self {
             anchor,
             still: 0,
@@ -86,16 +100,17 @@ impl<const K: usize> ModelBankState<K> {
             members: [Member::START; K],
             weights: [1.0 / K as f32; K],
             rung: FIRST_RUNG,
-            boundary: BOUNDARY,
+            noise,
             innovation: 0.0,
+            alternates: false,
         }
     }
 
     /// The variance R of the position of a boundary, counts², as estimated from the innovations of
-    /// edges.
+    /// edges. Without stamps it is the variance of the noise of a count.
     #[must_use]
     pub const fn boundary_variance(&self) -> f32 {
-        self.boundary
+        self.noise
     }
 
     /// The weighted mean of `part` of each member.
@@ -163,8 +178,8 @@ impl<const K: usize> ModelBankState<K> {
         let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
             let member = &mut self.members[i];
-            innovations[i] = member.correct_by_edge(edge, self.boundary);
-            member.correct_by_interval(ends, self.boundary);
+            innovations[i] = member.correct_by_edge(edge, self.noise);
+            member.correct_by_interval(ends, self.noise);
             error += self.weights[i] * innovations[i].error;
             variance += self.weights[i] * innovations[i].variance;
         }
@@ -182,9 +197,9 @@ impl<const K: usize> ModelBankState<K> {
             );
         }
         let correlation = limited(error * self.innovation / variance, 1.0);
-        let boundary = self.boundary * (1.0 - BOUNDARY_GAIN * correlation);
+        let noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
         // Both ends are constants: the panic of `clamp` is removed.
-        self.boundary = boundary.clamp(LEAST_BOUNDARY, LARGEST_BOUNDARY);
+        self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
         self.innovation = error;
         Judged {
             likelihoods,
@@ -193,20 +208,47 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Corrects all members by the quantisation interval of the count, whose ends are known to the
-    /// variance `noise` and have truncated `ends` before.
+    /// Corrects all members by the quantisation interval of the count, whose ends have truncated `ends` before,
+    /// and R by the correlation of two shifts if `learns`.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> Judged<K> {
+    pub(super) fn correct_by_interval(&mut self, ends: &Ends, learns: bool) -> Judged<K> {
         let expected = self.members[K - 1].position;
         let mut likelihoods = [Likelihood::default(); K];
+        let (mut shift, mut variance) = (0.0, 1.0);
         for i in 0..K {
-            likelihoods[i] = self.members[i].correct_by_interval(ends, noise);
+            let correction = self.members[i].correct_by_interval(ends, self.noise);
+            likelihoods[i] = correction.likelihood;
+            shift += self.weights[i] * correction.shift;
+            variance = correction.variance;
+        }
+        if learns {
+            self.learn_noise(shift, variance);
         }
         Judged {
             likelihoods,
             variance: 1.0,
             off: self.members[K - 1].position - expected,
         }
+    }
+
+    /// Changes R by the `shift` of a position whose variance with its noise is `variance`.
+    ///
+    /// Alternating shifts are noise. A motion that the members cannot follow makes two alternate, but seldom three.
+    #[inline(always)]
+    fn learn_noise(&mut self, shift: f32, variance: f32) {
+        let product = shift * self.innovation;
+        let alternated = self.alternates;
+        self.alternates = product < 0.0;
+        let product = if self.alternates && !alternated {
+            0.0
+        } else {
+            limited(product, variance)
+        };
+        let size = smaller(shift * shift / variance, LARGEST) - USUAL;
+        let noise = self.noise + GAIN_OF_SIZE * size * self.noise - GAIN_OF_PRODUCT * product;
+        // Both ends are constants: the panic of `clamp` is removed.
+        self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);
+        self.innovation = shift;
     }
 
     /// Updates the weights by the likelihoods, with the probability `change` of a change of q. Returns
@@ -332,8 +374,9 @@ impl ModelBankState<3> {
             ],
             weights: [a * per_sum, b * per_sum],
             rung: self.rung + first as u32,
-            boundary: self.boundary,
+            noise: self.noise,
             innovation: self.innovation,
+            alternates: self.alternates,
         }
     }
 }

@@ -5,9 +5,8 @@ extern crate std;
 use super::interval::{Ends, Likelihood};
 use super::ladder::Ladder;
 use super::member::Member;
-use super::state::ModelBankState;
 use super::state::tests::judged;
-use super::{NoStamps, Stamped, Stamps};
+use super::state::{LEAST_OF_COUNT, ModelBankState};
 use crate::units::Count;
 
 /// Probability that a position plus noise is inside ±1/2, and mean and variance of the position if so, by
@@ -50,7 +49,7 @@ fn interval_with_noisy_ends_corrects_less() {
         member.covariance = [variance, 0.0, 0.0, 1.0, 0.0, 1.0];
         let [probability, position, after] =
             summed(f64::from(mean), f64::from(variance), f64::from(ends));
-        let likelihood = member.correct_by_interval(Ends::of(true), ends);
+        let likelihood = member.correct_by_interval(Ends::of(true), ends).likelihood;
         // The truncation is approximated to 2 % of the deviation and 4 % of the variance, and its
         // probability to 4 %.
         let sum = f64::from(variance + ends);
@@ -70,10 +69,11 @@ fn interval_with_noisy_ends_corrects_less() {
 #[test]
 fn bank_takes_the_ends_for_as_noisy_as_told() {
     let ends = 0.1;
-    let mut state = ModelBankState::<2>::start(Count(0));
+    let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
     // Moves every position by 0.4 counts.
     state.drive(0.8);
-    let likelihoods = state.correct_by_interval(Ends::of(true), ends).likelihoods;
+    state.noise = ends;
+    let likelihoods = state.correct_by_interval(Ends::of(true), false).likelihoods;
     let variance = f64::from(Member::START.covariance[0]);
     let [noisy, exact] = [ends, 1e-9].map(|ends| summed(0.4, variance, f64::from(ends))[0]);
     for likelihood in likelihoods {
@@ -81,19 +81,46 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
         // The error of the truncation, as above.
         assert!((found - noisy).abs() < 0.04, "{found} {noisy} {exact}");
     }
-    // The boundaries of an edge are those of the interval; counts tell nothing of them.
-    assert_eq!(<Stamped as Stamps>::noise_of_ends(0.03), 0.03);
-    assert_eq!(<NoStamps as Stamps>::noise_of_ends(0.03), 0.0);
+}
+
+/// Three shifts of alternating signs are noise, two are none, and those of one sign are a motion that the members
+/// lag. R also follows the size of the shifts.
+#[test]
+fn noise_of_a_count_grows_where_shifts_alternate() {
+    let after = |positions: &[f32], learns: bool| {
+        let mut state = ModelBankState::<3>::start(Count(0), 0.01);
+        for position in positions {
+            for member in &mut state.members {
+                *member = Member::START;
+                member.position = *position;
+            }
+            state.correct_by_interval(Ends::of(true), learns);
+        }
+        state.noise
+    };
+    // 2 % of the variance of the position with its noise, and 3 % of R for a size that is beyond the usual one.
+    let [by_size, by_product] = [0.03 * 0.01, 0.02 * (1.0 / 12.0 + 0.01)];
+    let near = |found: f32, expected: f32| {
+        assert!((found - 0.01 - expected).abs() < 1e-4, "{found} {expected}");
+    };
+    near(after(&[2.0], true), by_size);
+    near(after(&[2.0, -2.0], true), 2.0 * by_size);
+    near(after(&[2.0, -2.0, 2.0], true), 3.0 * by_size + by_product);
+    near(after(&[2.0, 2.0], true), 2.0 * by_size - by_product);
+    // No shift: half of a usual one is missing.
+    near(after(&[0.0; 4], true), -4.0 * 0.015 * 0.01);
+    assert_eq!(after(&[2.0, -2.0, 2.0], false), 0.01);
+    assert_eq!(after(&[2.0; 20], true), LEAST_OF_COUNT);
 }
 
 #[test]
 fn two_neighbours_with_the_larger_weights_are_kept() {
     let ladder = Ladder::new(1e-3);
-    let mut bank = ModelBankState::<3>::start(Count(0));
+    let mut bank = ModelBankState::<3>::start(Count(0), 1e-3);
     bank.drive(3.0);
     for _ in 0..100 {
         bank.predict(&ladder, 3.0);
-        bank.correct_by_interval(Ends::of(true), 0.0);
+        bank.correct_by_interval(Ends::of(true), false);
     }
     let weighed = |weights: [f32; 3]| {
         let mut bank = bank;

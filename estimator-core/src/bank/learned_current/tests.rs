@@ -102,7 +102,7 @@ fn low_passed_currents_are_one_and_two_time_constants_late() {
     for rate in [Hertz(500.0), RATE, Hertz(10_000.0)] {
         let input = LearnedCurrent::new(rate).unwrap();
         let mut state = start(&input);
-        let bank = ModelBankState::<3>::start(Count(0));
+        let bank = ModelBankState::<3>::start(Count(0), 1e-3);
         let sample = Sample::new(Count(0)).with_current(Amps::new(2.0));
         let mut late = [0.0; 3];
         for _ in 0..(0.2 * rate.0) as usize {
@@ -138,7 +138,7 @@ fn input_is_the_sum_of_the_terms_and_friction_takes_at_most_half_of_the_velocity
         let mut state = start(&input);
         state.known = true;
         state.gains = [0.5, 0.25, -2.0, friction];
-        let mut bank = ModelBankState::<3>::start(Count(0));
+        let mut bank = ModelBankState::<3>::start(Count(0), 1e-3);
         bank.drive(velocity);
         let found = input.input(&mut state, &Sample::new(Count(0)), &bank);
         assert!(

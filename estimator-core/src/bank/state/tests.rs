@@ -1,7 +1,7 @@
 //! Weights, surprise and corrections of the state.
 
 extern crate std;
-use super::{Judged, LEAST_BOUNDARY, ModelBankState, root};
+use super::{Judged, LEAST_OF_BOUNDARY, ModelBankState, root};
 use crate::bank::interval::{Ends, Likelihood};
 use crate::bank::{ModelBank, Stamps};
 use crate::edge_clock::FreshEdge;
@@ -21,7 +21,7 @@ pub(in crate::bank) fn judged<const K: usize>(likelihoods: [Likelihood; K], off:
 
 #[test]
 fn variance_is_that_of_the_mixture() {
-    let mut state = ModelBankState::<2>::start(Count(0));
+    let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
     state.weights = [0.25, 0.75];
     for (member, (velocity, variance)) in state.members.iter_mut().zip([(3.0, 0.5), (-1.0, 0.1)]) {
         member.velocity = velocity;
@@ -35,7 +35,7 @@ fn variance_is_that_of_the_mixture() {
 #[test]
 fn bank_starts_anew_where_a_likelihood_is_no_number() {
     for (k, factor) in [(0, f32::NAN), (1, f32::NAN), (2, f32::INFINITY), (1, -9.0)] {
-        let mut state = ModelBankState::<3>::start(Count(7));
+        let mut state = ModelBankState::<3>::start(Count(7), 1e-3);
         let expected = state;
         state.rung = 9;
         state.weights = [0.2, 0.5, 0.3];
@@ -50,7 +50,7 @@ fn bank_starts_anew_where_a_likelihood_is_no_number() {
 
 #[test]
 fn weights_follow_likelihoods_that_f32_cannot_hold() {
-    let mut state = ModelBankState::<3>::start(Count(0));
+    let mut state = ModelBankState::<3>::start(Count(0), 1e-3);
     // exp(-1e6) is far below the smallest f32; the ratio of the last two is that of (1 + x / 16)^-16.
     let likelihoods = [1e6, 40.0, 20.0].map(|x| Likelihood::new(1.0, x));
     state.weigh(&judged(likelihoods, 0.0), 0.0);
@@ -63,7 +63,7 @@ fn weights_follow_likelihoods_that_f32_cannot_hold() {
 
 #[test]
 fn what_surprises_every_member_moves_the_bank_up() {
-    let start = ModelBankState::<3>::start(Count(0));
+    let start = ModelBankState::<3>::start(Count(0), 1e-3);
     // e²/2S; one member that expected the measurement is enough.
     for (deviations, moves, hits) in [
         (7.9f32, false, false),
@@ -91,7 +91,7 @@ fn what_surprises_every_member_moves_the_bank_up() {
 
 #[test]
 fn farthest_impact_leaves_the_variance_of_the_start() {
-    let mut state = ModelBankState::<2>::start(Count(0));
+    let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
     let before = state.members[1].covariance[3];
     state.weigh(
         &judged([1e9; 2].map(|x| Likelihood::new(1.0, x)), 2e9),
@@ -102,7 +102,7 @@ fn farthest_impact_leaves_the_variance_of_the_start() {
 
 #[test]
 fn a_change_of_the_noise_keeps_every_member_possible() {
-    let mut state = ModelBankState::<2>::start(Count(0));
+    let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
     state.weights = [0.0, 1.0];
     state.weigh(&judged([Likelihood::CERTAIN; 2], 0.0), 0.25);
     assert!((state.weights[0] - 0.25 / 1.5).abs() < 1e-6);
@@ -115,8 +115,8 @@ fn an_edge_after_any_uncertainty_leaves_numbers() {
     let mut seed = 5;
     let mut uniform = || (draw(&mut seed) >> 40) as f32 / (1u32 << 24) as f32;
     for _ in 0..200_000 {
-        let mut state = ModelBankState::<2>::start(Count(0));
-        state.boundary = LEAST_BOUNDARY;
+        let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
+        state.noise = LEAST_OF_BOUNDARY;
         let variance = 10f32.powf(14.0 * uniform() - 6.0);
         let ticks = 10f32.powf(3.0 * uniform());
         let own = variance * uniform();
@@ -169,7 +169,7 @@ fn pivots(covariance: [f32; 6]) -> [f64; 3] {
 fn assert_definite<S: Stamps>(bank: &ModelBank<3, S>, clock: Hertz, rate: Hertz, varies: bool) {
     let mut seed = 5;
     let mut uniform = || (draw(&mut seed) >> 40) as f64 / f64::from(1u32 << 24);
-    let mut state = ModelBankState::<3>::start(Count(0));
+    let mut state = ModelBankState::<3>::start(Count(0), 1e-3);
     let (mut now, mut position) = (0.0, 0.3f64);
     let (mut crossed, mut boundary) = (0.0, 0.0);
     for stretch in 0..20_000 {

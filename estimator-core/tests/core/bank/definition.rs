@@ -23,6 +23,7 @@ pub(super) struct Definition {
     stamps: bool,
     noise: f64,
     innovation: f64,
+    alternates: bool,
     /// Time without a change, periods.
     still: f64,
 }
@@ -130,8 +131,9 @@ impl Definition {
             rung: 4,
             period: 1.0 / rate,
             stamps: edges.is_some(),
-            noise: 1e-3,
+            noise: if edges.is_some() { 1e-3 } else { 1e-5 },
             innovation: 0.0,
+            alternates: false,
             still: 0.0,
         };
         let mut velocities = vec![0.0];
@@ -184,8 +186,7 @@ impl Definition {
                 error += self.weights[i] * e;
                 variance += self.weights[i] * s;
             }
-            let ends = if self.stamps { self.noise } else { 0.0 };
-            let deviation = (filter.p[(0, 0)] + ends).sqrt();
+            let deviation = (filter.p[(0, 0)] + self.noise).sqrt();
             let ends = [count, count + 1.0].map(|end| (end - filter.x[0]) / deviation);
             let (shift, kept, probability) = if changed || deviation > WIDE {
                 truncated(ends[0], ends[1])
@@ -204,6 +205,8 @@ impl Definition {
             let k = filter.p.column(0) / deviation;
             if edge.is_none() {
                 last = k[0] * shift;
+                error += self.weights[i] * deviation * shift;
+                variance = deviation * deviation;
             }
             filter.x += k * shift;
             filter.p -= k * k.transpose() * (1.0 - kept);
@@ -212,6 +215,19 @@ impl Definition {
         if edge.is_some() {
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
             self.noise = (self.noise * (1.0 - 0.1 * correlation)).clamp(3e-4, 0.1);
+            self.innovation = error;
+        } else if !self.stamps {
+            let product = error * self.innovation;
+            let is_first = product < 0.0 && !self.alternates;
+            self.alternates = product < 0.0;
+            let product = if is_first {
+                0.0
+            } else {
+                product.clamp(-variance, variance)
+            };
+            let size = (error * error / variance).min(1.5) - 0.5;
+            let noise = self.noise * (1.0 + 0.03 * size) - 0.02 * product;
+            self.noise = noise.clamp(1e-5, 1e4);
             self.innovation = error;
         }
         let change = interval * self.period / (members as f64 - 1.0);

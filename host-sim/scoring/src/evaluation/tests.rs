@@ -54,7 +54,11 @@ fn within_2_sigma_is_the_share_after_the_start() {
     // At 10 Hz the first 0.1 s, which are not scored, are one sample.
     let truth = [0.0, 2.0, 2.1, 1.5, 1.0];
     assert_eq!(estimate.within_2_sigma(&truth, 10.0), Some(0.75));
-    assert_eq!(estimate.within_2_sigma(&truth, 50.0), None, "none is scored");
+    assert_eq!(
+        estimate.within_2_sigma(&truth, 50.0),
+        None,
+        "none is scored"
+    );
     let without_deviation = Estimate {
         deviation: None,
         ..estimate
