@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Chain};
-use std::iter;
+use std::{iter, slice};
 
 use csv::ByteRecord;
 use vcd::{Command, IdCode, ParseError, Parser, Value, Vector};
@@ -67,7 +67,9 @@ impl<R: BufRead> ValueChanges<R> {
                     let index = index.filter(|_| bits == 1).map(|index| index.to_string());
                     let name = name + &index.unwrap_or_default();
                     variables.push(Variable {
-                        path: [scopes.as_slice(), &[name.clone()]].concat().join("."),
+                        path: [scopes.as_slice(), slice::from_ref(&name)]
+                            .concat()
+                            .join("."),
                         name,
                         code,
                         is_bit: bits == 1,
