@@ -1,6 +1,7 @@
 //! The bank against a reference in f64: textbook matrices, the exact truncated Gaussian, absolute
 //! positions. And what it promises: rest, a variance, a noise of the boundaries, any encoder.
 
+mod constant_speed;
 mod definition;
 mod driven;
 mod uneven;
