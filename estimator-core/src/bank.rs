@@ -70,7 +70,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            S = H P Hᵀ + R    K = P Hᵀ / S              x += K e    P -= K S Kᵀ
 ///            rounding: S has 1e-6 P_00 more, and P_11 keeps 1e-6 of itself
 /// interval   the position plus a noise of variance R lies in the quantisation interval of the count: mean and
-///            variance of the truncated Gaussian, whose mean shifts by s. In a count that is not
+///            variance of the truncated Gaussian, whose mean shifts by s_i. In a count that is not
 ///            new, what exceeds the truncation by an end at √3 standard deviations. Rounding: x_0 has
 ///            1e-6 (P_00 + 1 count²) more for the truncation, and P_11 keeps 1e-6 of itself
 /// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
@@ -78,9 +78,9 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// surprise   every member is 8 standard deviations off, e² > 64 S: w = 1 of the last one, 0 of the others;
 ///            40: its P_11 += e² / 10 and P_22 += e² / 100, e² at most 1e4 counts²
 /// restart    Σ is no positive finite number: the bank starts anew
-/// noise      with stamps R = R (1 - 0.1 ρ)       ρ = Σ w e Σ w' e' / Σ w S within ±1, e' of the edge before; R
+/// noise      with stamps R = R (1 - 0.1 ρ)       ρ = e e' / S within ±1, of Σ w_i e_i, Σ w_i S_i, e' the edge before; R
 ///            within 3e-4 and 0.1 counts²
-///            without R = R + 0.03 R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s = Σ w s, s' of the sample before;
+///            without R = R + 0.03 R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s = Σ w_i s_i, s' the sample before;
 ///            V = P_00 + R of the last member; s s' within ±V, and 0 where it is the first one below 0; R within
 ///            1e-5 and 1e4 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)

@@ -209,7 +209,7 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by the quantisation interval of the count, whose ends have truncated `ends` before,
-    /// and R by the correlation of two shifts if `learns`.
+    /// and R by the shifts if `learns`.
     #[inline(always)]
     pub(super) fn correct_by_interval(&mut self, ends: &Ends, learns: bool) -> Judged<K> {
         let expected = self.members[K - 1].position;

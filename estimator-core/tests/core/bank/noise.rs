@@ -1,0 +1,63 @@
+//! The noise of the boundaries and of the counts, which a bank learns.
+
+use estimator_core::{Count, Hertz, Imm, ImmEdge, ModelBank, Sample, VelocityEstimator};
+
+use super::{CLOCK, Random, Seen, hand};
+
+#[test]
+fn the_noise_of_boundaries_is_estimated() {
+    // The variance of a uniform error within ±noise is a third of its square.
+    for (noise, lowest, highest) in [(0.0, 0.0, 1.1e-3), (0.2, 0.004, 0.05)] {
+        let seen = Seen::new(1000.0, 6000, noise, &|t| 20_000.0 * hand(t));
+        let bank: ImmEdge = ModelBank::with_edges(CLOCK, Hertz(1000.0)).expect("valid");
+        let mut state = bank.start(&seen.samples[0]);
+        let (mut sum, mut number) = (0.0, 0.0);
+        for (tick, sample) in seen.samples.iter().enumerate().skip(1) {
+            bank.update(&mut state, sample);
+            if tick > 2000 {
+                sum += f64::from(state.boundary_variance());
+                number += 1.0;
+            }
+        }
+        let mean = sum / number;
+        println!("{noise}: {mean}");
+        assert!(mean >= lowest && mean <= highest, "{noise}: {mean}");
+    }
+}
+
+/// A magnetic encoder whose counts are noisy: the variance is learned in a second, and the velocity is far better
+/// than the differences. Without noise it stays small.
+#[test]
+fn the_noise_of_counts_is_estimated() {
+    for (deviation, [lowest, highest], share) in [
+        (0.0, [0.0, 0.1], 0.4),
+        (1.0, [0.33, 3.0], 0.2),
+        (5.0, [8.0, 75.0], 0.1),
+        (50.0, [800.0, 7500.0], 0.1),
+    ] {
+        let seen = Seen::new(1000.0, 6000, 0.0, &|t| 16_384.0 * hand(t));
+        let mut random = Random(7);
+        // The sum of three has the variance 1.
+        let mut noise = || (0..3).map(|_| random.next()).sum::<f64>() * deviation;
+        let counts: Vec<_> = (seen.counts.iter())
+            .map(|count| (count + 0.5 + noise()).floor() as i64)
+            .collect();
+        let bank: Imm = ModelBank::new(Hertz(1000.0)).expect("valid");
+        let mut state = bank.start(&Sample::new(Count(counts[0] as u32)));
+        let (mut learned, mut errors, mut differences, mut number) = (0.0, 0.0, 0.0, 0.0);
+        for tick in 1..counts.len() {
+            let velocity = bank.update(&mut state, &Sample::new(Count(counts[tick] as u32)));
+            if tick > 1000 {
+                let truth = seen.velocities[tick];
+                learned += f64::from(state.boundary_variance());
+                errors += (f64::from(velocity.0) - truth).powi(2);
+                differences += ((counts[tick] - counts[tick - 1]) as f64 - truth).powi(2);
+                number += 1.0;
+            }
+        }
+        let (mean, ratio) = (learned / number, (errors / differences).sqrt());
+        println!("{deviation}: R {mean}, error {ratio}");
+        assert!(mean >= lowest && mean <= highest, "{deviation}: {mean}");
+        assert!(ratio < share, "{deviation}: {ratio}");
+    }
+}
