@@ -1,12 +1,13 @@
 //! Logs with one JSON object a line.
 
+mod elements;
 mod fields;
+mod lists;
+mod other;
 
 use std::io::BufRead;
 
 use csv::ByteRecord;
-use serde_json::Value;
-
 use terminal::failure::Failure;
 
 use super::lines::LineReader;
@@ -14,6 +15,7 @@ use super::named_fields::{Field, Places, names};
 use super::separator::is_comment;
 
 use fields::fields;
+pub(super) use other::Other;
 
 /// The channel of a moteus log that has position and current.
 const CHANNEL: &str = "servo_stats";
@@ -35,15 +37,13 @@ impl Begin {
     /// Reads the first bytes `head` of a log called `name`; `None` if it has no objects.
     ///
     /// # Errors
-    /// [`Failure::Input`] with the remedy for another layout of JSON than one object a line.
+    /// [`Failure::Input`] with the remedy for a first line that is more than one object, or a wrong one.
     pub(super) fn of(head: &str, name: &str) -> Result<Option<Self>, Failure> {
-        let content = |line: &&str| !line.trim().is_empty() && !is_comment(line.as_bytes());
-        let Some(index) = head.lines().position(|line| content(&line)) else {
+        let Some(index) = content(head) else {
             return Ok(None);
         };
         let line = index as u64 + 1;
         let lines = || head.lines().skip(index);
-        check(lines(), line, name)?;
         let first = lines().next().unwrap_or_default();
         if !first.trim_start().starts_with('{') {
             return Ok(None);
@@ -132,27 +132,6 @@ fn channel(fields: &[Field]) -> Option<&str> {
     Some(&channel.text)
 }
 
-/// Checks that a text whose content begins with `lines` has no other layout of JSON than one object a
-/// line.
-fn check<'a>(mut lines: impl Iterator<Item = &'a str>, at: u64, name: &str) -> Result<(), Failure> {
-    let first = lines.next().unwrap_or_default().trim();
-    let inside = first.strip_prefix('[').map(str::trim_start);
-    let begin = match inside {
-        Some("") => lines.map(str::trim).find(|line| !line.is_empty()),
-        inside => inside,
-    };
-    let is_array = begin.is_some_and(|begin| begin.starts_with(['{', '[']));
-    let is_row = first.starts_with('[') && serde_json::from_str::<Vec<Value>>(first).is_ok();
-    let what = match (is_array || is_row, first) {
-        (true, _) => "a JSON array",
-        (_, "{") => "a JSON object of several lines",
-        _ => return Ok(()),
-    };
-    Err(Failure::Input(format!(
-        "{name}: line {at}: {what}; {REMEDY}"
-    )))
-}
-
 /// Error for a line that is no object.
 fn no_object(text: &[u8], line: u64, name: &str) -> Failure {
     match is_whole(text) {
@@ -161,6 +140,12 @@ fn no_object(text: &[u8], line: u64, name: &str) -> Failure {
             "{name}: line {line}: no JSON object; remove the line"
         )),
     }
+}
+
+/// Index of the first line of `head` that is neither blank nor a comment.
+fn content(head: &str) -> Option<usize> {
+    let is_content = |line: &str| !line.trim().is_empty() && !is_comment(line.as_bytes());
+    head.lines().position(is_content)
 }
 
 /// Whether a line has begin and end of an object. A cut line has no end.
@@ -191,38 +176,6 @@ mod tests {
 
     fn read(text: &str) -> Result<Recording, String> {
         Recording::parse(text.as_bytes(), "r.json").map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn other_layouts_of_json_are_refused() {
-        // An object and 127 lists are 128 levels.
-        let deep = format!("{{\"a\": {}0{}}}\n", "[".repeat(130), "]".repeat(130));
-        for (text, what) in [
-            ("[{\"t\": 0.0, \"counts_large\": 0},", "1: a JSON array"),
-            ("\n# a log\n[\n {\n  \"t\": 0.0,\n", "3: a JSON array"),
-            ("[0.0, 0]\n[0.001, 8]\n", "1: a JSON array"),
-            (
-                "{\n  \"t\": [0, 0.001],\n",
-                "1: a JSON object of several lines",
-            ),
-            (
-                "{\"t\": 0},\n{\"t\": 1}\n",
-                "1: no JSON object on a line of its own (trailing characters at column 9)",
-            ),
-            (
-                "{\"t\": 0}{\"t\": 1}\n",
-                "1: no JSON object on a line of its own (trailing characters at column 9)",
-            ),
-            (
-                &deep,
-                "1: no JSON object on a line of its own (recursion limit exceeded at column 133)",
-            ),
-        ] {
-            let error = read(text).unwrap_err();
-            let said = format!("r.json: line {what}; write one JSON object a line, for example ");
-            assert!(error.starts_with(&said), "{error}");
-        }
-        read("[info] a log\nt,counts_large\n0,1\n0.001,2\n").unwrap();
     }
 
     #[test]

@@ -43,9 +43,19 @@ pub(super) struct Records<'a> {
 impl<'a> Records<'a> {
     /// Reads the begin of a log.
     pub(super) fn open(
+        input: impl Read + 'a,
+        name: &'a str,
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
+        Self::open_layout(input, name, options, false)
+    }
+
+    /// As [`Records::open`]; `is_arranged` is true for the rows of JSON that had another layout.
+    fn open_layout(
         mut input: impl Read + 'a,
         name: &'a str,
         options: &ReadOptions,
+        is_arranged: bool,
     ) -> Result<Self, Failure> {
         let mut head = Vec::new();
         let read = input.by_ref().take(HEAD).read_to_end(&mut head);
@@ -61,6 +71,10 @@ impl<'a> Records<'a> {
         let is_cut_line = is_cut && !text.contains('\n');
         let input: Box<dyn Read> = Box::new(Cursor::new(head).chain(input));
         let input = BufReader::with_capacity(1 << 16, input);
+        if let Some(other) = json::Other::of(&text).filter(|_| !is_arranged) {
+            let rows = other.rows(input, end, name)?;
+            return Self::open_layout(rows, name, options, true);
+        }
         let named = |names: &[String], line| Layout {
             line,
             is_stamped: is_stamped(&text),

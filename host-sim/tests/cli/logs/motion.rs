@@ -38,6 +38,8 @@ pub(super) const READ: &[(&str, &str)] = &[
     ),
     ("moteus-tview.csv", ""),
     ("moteus-tview.jsonl", ""),
+    ("array.json", ""),
+    ("lists.json", ""),
     ("moteus-python.csv", ""),
     ("odrive.csv", ""),
     ("vesc-tool.csv", ""),

@@ -128,8 +128,8 @@ impl<'de> Visitor<'de> for Inside<'_> {
 /// The numbers that JSON does not have and Python writes.
 const WORDS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
 
-/// The line with strings for [`WORDS`].
-fn with_words(line: &[u8]) -> Vec<u8> {
+/// The text with strings for [`WORDS`], which [`fields`] reads as those words.
+pub(super) fn with_words(line: &[u8]) -> Vec<u8> {
     let mut clean = Vec::with_capacity(line.len());
     let mut quoted = false;
     let mut k = 0;
