@@ -315,7 +315,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
             }
             None => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS),
         };
-        let likelihood = state.weigh(&judged, over.change);
+        let likelihood = state.weigh(&judged, over.change, S::NOISE);
         if state.still >= self.rest {
             state.stop();
         }

@@ -252,9 +252,9 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Updates the weights by the likelihoods, with the probability `change` of a change of q. Returns
-    /// the likelihood of the bank.
+    /// the likelihood of the bank. A bank that starts anew has R = `noise`.
     #[inline(always)]
-    pub(super) fn weigh(&mut self, judged: &Judged<K>, change: f32) -> Likelihood {
+    pub(super) fn weigh(&mut self, judged: &Judged<K>, change: f32, noise: f32) -> Likelihood {
         let likelihoods = &judged.likelihoods;
         let mut smallest = likelihoods[0].divisor;
         for likelihood in likelihoods {
@@ -270,7 +270,7 @@ impl<const K: usize> ModelBankState<K> {
         let per_sum = 1.0 / sum;
         if !(per_sum > 0.0) {
             unlikely();
-            return self.restart();
+            return self.restart(noise);
         }
         for weight in &mut self.weights {
             *weight *= per_sum;
@@ -287,12 +287,15 @@ impl<const K: usize> ModelBankState<K> {
 
     /// Starts anew: the weights are no numbers. With definite covariances no input is known that leads here.
     #[inline(always)]
-    fn restart(&mut self) -> Likelihood {
+    fn restart(&mut self, noise: f32) -> Likelihood {
         for member in &mut self.members {
             *member = Member::START.copied();
         }
         self.weights = [1.0 / K as f32; K];
         self.rung = FIRST_RUNG;
+        self.noise = noise;
+        self.innovation = 0.0;
+        self.alternates = false;
         Likelihood::CERTAIN
     }
 

@@ -125,7 +125,7 @@ fn two_neighbours_with_the_larger_weights_are_kept() {
     let weighed = |weights: [f32; 3]| {
         let mut bank = bank;
         let likelihoods = weights.map(|weight| Likelihood::new(weight, 0.0));
-        bank.weigh(&judged(likelihoods, 0.0), 0.0);
+        bank.weigh(&judged(likelihoods, 0.0), 0.0, 1e-3);
         bank
     };
     // The variance of a member grows with its process noise, from the first to the last.

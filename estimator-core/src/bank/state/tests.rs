@@ -41,9 +41,12 @@ fn bank_starts_anew_where_a_likelihood_is_no_number() {
         state.weights = [0.2, 0.5, 0.3];
         state.members[1].velocity = 5.0;
         state.members[2].covariance[0] = -0.1;
+        state.noise = f32::NAN;
+        state.innovation = 2.0;
+        state.alternates = true;
         let mut likelihoods = [Likelihood::CERTAIN; 3];
         likelihoods[k].factor = factor;
-        state.weigh(&judged(likelihoods, 0.0), 1e-4);
+        state.weigh(&judged(likelihoods, 0.0), 1e-4, 1e-3);
         assert_eq!(state, expected, "{k} {factor}");
     }
 }
@@ -53,7 +56,7 @@ fn weights_follow_likelihoods_that_f32_cannot_hold() {
     let mut state = ModelBankState::<3>::start(Count(0), 1e-3);
     // exp(-1e6) is far below the smallest f32; the ratio of the last two is that of (1 + x / 16)^-16.
     let likelihoods = [1e6, 40.0, 20.0].map(|x| Likelihood::new(1.0, x));
-    state.weigh(&judged(likelihoods, 0.0), 0.0);
+    state.weigh(&judged(likelihoods, 0.0), 0.0, 1e-3);
     let ratio = (2.25f64 / 3.5).powi(16);
     let expected = [0.0, ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)];
     for (weight, expected) in state.weights.iter().zip(expected) {
@@ -74,7 +77,7 @@ fn what_surprises_every_member_moves_the_bank_up() {
         let x = 0.5 * deviations * deviations;
         let likelihoods = [1e5, x, 2e4].map(|x| Likelihood::new(1.0, x));
         let mut state = start;
-        state.weigh(&judged(likelihoods, -3.0), 1e-3);
+        state.weigh(&judged(likelihoods, -3.0), 1e-3, 1e-3);
         assert_eq!(state.weights == [0.0, 0.0, 1.0], moves, "{deviations}");
         // After an impact the last member has 0.1 e² and 0.01 e² more.
         let [before, after] = [start, state].map(|state| state.members[2].covariance);
@@ -93,10 +96,8 @@ fn what_surprises_every_member_moves_the_bank_up() {
 fn farthest_impact_leaves_the_variance_of_the_start() {
     let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
     let before = state.members[1].covariance[3];
-    state.weigh(
-        &judged([1e9; 2].map(|x| Likelihood::new(1.0, x)), 2e9),
-        1e-3,
-    );
+    let likelihoods = [1e9; 2].map(|x| Likelihood::new(1.0, x));
+    state.weigh(&judged(likelihoods, 2e9), 1e-3, 1e-3);
     assert_eq!(state.members[1].covariance[3], before + 1000.0);
 }
 
@@ -104,7 +105,7 @@ fn farthest_impact_leaves_the_variance_of_the_start() {
 fn a_change_of_the_noise_keeps_every_member_possible() {
     let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
     state.weights = [0.0, 1.0];
-    state.weigh(&judged([Likelihood::CERTAIN; 2], 0.0), 0.25);
+    state.weigh(&judged([Likelihood::CERTAIN; 2], 0.0), 0.25, 1e-3);
     assert!((state.weights[0] - 0.25 / 1.5).abs() < 1e-6);
 }
 
