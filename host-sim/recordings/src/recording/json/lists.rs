@@ -187,7 +187,7 @@ fn split<'a>(name: &str, rows: &[&'a str], names: &[&str]) -> Result<Vec<List<'a
 }
 
 /// Adds the lists of the value `text` called `name`, and those of the objects in it, whose names it precedes. An object
-/// whose keys are numbers is a list.
+/// whose keys are numbers is a list, if it has none.
 fn collect<'a>(
     name: String,
     text: &'a str,
@@ -201,16 +201,18 @@ fn collect<'a>(
         Some(b'{') => {
             let members = serde_json::Deserializer::from_str(text).deserialize_map(Members)?;
             let is_number = |(key, _): &(Cow<str>, &str)| key.parse::<u64>().is_ok();
-            if !members.is_empty() && members.iter().all(is_number) {
-                to.push((name, members.into_iter().map(|(_, value)| value).collect()));
-                return Ok(());
-            }
+            let is_list = !members.is_empty() && members.iter().all(is_number);
+            let before = to.len();
+            let values: Vec<_> = members.iter().map(|(_, value)| *value).collect();
             for (key, value) in members {
-                let name = match name.as_str() {
+                let inner = match name.as_str() {
                     "" | "data" => key.into_owned(),
                     name => format!("{name}.{key}"),
                 };
-                collect(name, value, to)?;
+                collect(inner, value, to)?;
+            }
+            if is_list && to.len() == before {
+                to.push((name, values));
             }
         }
         _ => {}

@@ -14,9 +14,9 @@ fn counts(text: &str) -> Vec<u32> {
 }
 
 /// The layouts of a log of three rows; each object has a field beside them that no row needs.
-const LAYOUTS: [&str; 17] = [
+const LAYOUTS: [&str; 18] = [
     r#"[{"t": 0, "counts_large": 5, "x": "a, [b"}, {"t": 0.001, "counts_large": 6}, {"t": 0.002, "counts_large": 8}]"#,
-    "# a log\n[\n{\"t\": 0, \"counts_large\": 5},\n{\"t\": 0.001, \"counts_large\": 6}\n,{\"t\": 0.002, \"counts_large\": 8}\n]\n",
+    "# a \"log\n# of [x], {\n[\n{\"t\": 0, \"counts_large\": 5},\n{\"t\": 0.001, \"counts_large\": 6}\n,{\"t\": 0.002, \"counts_large\": 8}\n]\n",
     "[\n  {\n    \"t\": 0,\n    \"counts_large\": 5,\n    \"x\": {\"y\": [1, \"}\\\"\"]}\n  },\n  {\n    \"t\": 0.001,\n    \
      \"counts_large\": 6\n  },\n  {\n    \"t\": 0.002,\n    \"counts_large\": 8\n  }\n]\n",
     "{\n  \"t\": 0,\n  \"counts_large\": 5\n}\n{\n  \"t\": 0.001,\n  \"counts_large\": 6\n}\n{\n  \"t\": 0.002,\n  \
@@ -29,6 +29,7 @@ const LAYOUTS: [&str; 17] = [
     r#"{"t": [0, 0.001, 0.002], "name": "a run", "counts_large": [5, 6, 8], "gains": [1.5]}"#,
     "// a log\n{\n  \"t\": [\n    0,\n    0.001,\n    0.002\n  ],\n  \"counts_large\": [5, 6, 8],\n  \"x\": [NaN, null, \"b\\n\"]\n}\n",
     r#"{"t": {"0": 0, "1": 0.001, "2": 0.002}, "counts_large": {"0": 5, "1": 6, "2": 8}}"#,
+    r#"{"0": {"t": 0, "counts_large": 5}, "1": {"t": 0.001, "counts_large": 6}, "2": {"t": 0.002, "counts_large": 8}}"#,
     r#"{"columns": ["t", "counts_large"], "index": [0, 1, 2], "data": [[0, 5], [0.001, 6], [0.002, 8]]}"#,
     r#"{"schema": {"fields": []}, "data": [{"t": 0, "counts_large": 5}, {"t": 0.001, "counts_large": 6}, {"t": 0.002, "counts_large": 8}]}"#,
     "{\"device\": {\"poles\": [1]},\n\"data\": [\n{\"t\": 0, \"counts_large\": 5},\n{\"t\": 0.001, \"counts_large\": 6},\n{\"t\": 0.002, \"counts_large\": 8}\n]}",
@@ -73,6 +74,10 @@ fn lists_in_a_list_are_columns() {
         (
             r#"{"t": [0, 0.001, 0.002], "q": [[1, 5], [2, 6], [3, 8]]}"#,
             "counts_large=q.1",
+        ),
+        (
+            r#"{"t": [0, 0.001, 0.002], "motors": {"1": {"at": [5, 6, 8]}, "2": {"at": [1, 1, 1]}}}"#,
+            "counts_large=motors.1.at",
         ),
         // As numpy prints it.
         (
