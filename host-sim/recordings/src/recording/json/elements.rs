@@ -70,7 +70,7 @@ impl<R: Read> Elements<R> {
         match byte {
             b'\n' => self.end_of_line(),
             b' ' | b'\t' | b'\r' => self.space(),
-            b',' if inside == Some(0) && !self.is_begun => {}
+            b',' if inside == Some(0) => {}
             b'{' | b'[' => {
                 if inside.is_some_and(|inside| inside > 0 || byte == b'{') {
                     self.write(byte);
