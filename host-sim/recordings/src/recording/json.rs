@@ -5,11 +5,13 @@ mod fields;
 mod lists;
 mod other;
 
+use std::collections::HashSet;
 use std::io::BufRead;
 
 use csv::ByteRecord;
 use terminal::failure::Failure;
 
+use super::layout::SEARCHED;
 use super::lines::LineReader;
 use super::named_fields::{Field, Places, names};
 use super::separator::is_comment;
@@ -29,6 +31,8 @@ pub(super) struct Begin {
     pub(super) names: Vec<String>,
     /// Line of the first object.
     pub(super) line: u64,
+    /// Places of the names that have a number with a fraction in the first objects.
+    pub(super) fractional: Vec<usize>,
     /// Whether it is a log of moteus, whose lines belong to channels and controllers.
     channels: bool,
 }
@@ -57,8 +61,15 @@ impl Begin {
         let Some(found) = of_channel.or_else(|| objects().next()) else {
             return Err(not_alone(first.as_bytes(), line, name));
         };
+        let names = names(found);
+        let has_fraction = |field: &Field| field.text.parse().is_ok_and(|x: f64| x.fract() != 0.0);
+        let fractions = objects().take(SEARCHED).flatten().filter(has_fraction);
+        let fractions: HashSet<_> = fractions.map(|field| field.name).collect();
         Ok(Some(Self {
-            names: names(found),
+            fractional: (0..names.len())
+                .filter(|place| fractions.contains(&names[*place]))
+                .collect(),
+            names,
             line,
             channels,
         }))

@@ -84,7 +84,10 @@ impl<'a> Records<'a> {
             let (changes, layout) = ValueChanges::open(input, name)?;
             (layout, Source::ValueChanges(Box::new(changes)))
         } else if let Some(begin) = json::Begin::of(&text, name)? {
-            let layout = named(&begin.names, begin.line);
+            let layout = Layout {
+                fractional: begin.fractional.clone(),
+                ..named(&begin.names, begin.line)
+            };
             (layout, Source::Json(Json::new(input, end, &begin)))
         } else if let Some(begin) = labelled::Begin::of(&text) {
             let layout = named(&begin.names, begin.line);

@@ -139,6 +139,18 @@ fn an_error_has_the_line_of_the_element_or_its_number() {
 }
 
 #[test]
+fn a_position_with_fractions_is_offered_as_an_angle() {
+    for (positions, unit) in [("[0, 2, 4]", "counts"), ("[0, 2.5, 4]", "rad")] {
+        let error = read(&format!(
+            r#"{{"time": [0, 0.1, 0.2], "angle": {positions}}}"#
+        ))
+        .unwrap_err();
+        let option = format!("--column 't=time:s,counts_large=angle:{unit}'");
+        assert!(error.contains(&option), "{error}");
+    }
+}
+
+#[test]
 fn what_has_one_object_a_line_or_no_json_is_left_as_it_is() {
     let objects = "{\"t\":0,\"q\":[1,2]}\n{\"t\":1,\"q\":[1,2]}\n";
     for text in [
