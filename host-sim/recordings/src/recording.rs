@@ -261,6 +261,8 @@ mod tests {
         assert_eq!(recording.trace.true_omega, Some(vec![1.5, 2.0, 3.0]));
         assert_eq!(recording.trace.current, None);
         assert_eq!(recording.uneven_steps, 0);
+        let quoted = parse("\"t\", \"counts_large\"\n0.0, 7\n0.001, 9\n").unwrap();
+        assert_eq!(quoted.trace.counts_large, [7, 9]);
     }
 
     #[test]

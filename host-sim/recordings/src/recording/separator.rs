@@ -45,7 +45,7 @@ impl Separator {
         self != Self::Comma
     }
 
-    /// The fields of one line, without spaces around them.
+    /// The fields of one line, without spaces around them, and without quotes: a space may precede these.
     pub(super) fn split(self, line: &str) -> Vec<String> {
         if self == Self::Whitespace {
             return line.split_whitespace().map(str::to_owned).collect();
@@ -59,7 +59,13 @@ impl Separator {
         if !matches!(reader.read_byte_record(&mut record), Ok(true)) {
             return Vec::new();
         }
-        let text = |field: &[u8]| String::from_utf8_lossy(field).into_owned();
+        let text = |field: &[u8]| {
+            let text = String::from_utf8_lossy(field);
+            let quoted = text
+                .strip_prefix('"')
+                .and_then(|text| text.strip_suffix('"'));
+            quoted.unwrap_or(&text).to_owned()
+        };
         record.iter().map(text).collect()
     }
 }
@@ -176,6 +182,14 @@ mod tests {
             .read_to_string(&mut read)
             .unwrap();
         read
+    }
+
+    #[test]
+    fn a_space_may_precede_a_quote() {
+        let fields = |line| Separator::Comma.split(line);
+        assert_eq!(fields(r#""a, b","c""#), ["a, b", "c"]);
+        assert_eq!(fields(r#" "t", "counts" ,"""#), ["t", "counts", ""]);
+        assert_eq!(fields("3\", \"4, \""), ["3\"", "\"4", "\""]);
     }
 
     #[test]
