@@ -125,28 +125,52 @@ impl<'de> Visitor<'de> for Inside<'_> {
     }
 }
 
-/// The numbers that JSON does not have and Python writes.
-const WORDS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
+/// The values that JSON does not have and Python writes.
+const WORDS: [&str; 4] = ["NaN", "-Infinity", "Infinity", "None"];
 
-/// The text with strings for [`WORDS`], which [`fields`] reads as those words.
-pub(super) fn with_words(line: &[u8]) -> Vec<u8> {
-    let mut clean = Vec::with_capacity(line.len());
-    let mut quoted = false;
+/// The truth values as Python prints them, and as JSON has them.
+const TRUTH: [(&str, &str); 2] = [("True", "true"), ("False", "false")];
+
+/// The text with strings for [`WORDS`], which [`fields`] reads as those words, and with what else Python prints for a
+/// dictionary as JSON has it: truth values, and strings in single quotes.
+pub(super) fn with_words(text: &[u8]) -> Vec<u8> {
+    let mut clean = Vec::with_capacity(text.len());
+    let mut quote = None;
     let mut k = 0;
-    while k < line.len() {
-        let rest = &line[k..];
-        let word = WORDS.iter().find(|w| rest.starts_with(w.as_bytes()));
-        if quoted && rest[0] == b'\\' {
-            clean.extend(&rest[..rest.len().min(2)]);
-            k += 2;
-        } else if let (false, Some(word)) = (quoted, word) {
-            clean.extend(format!("\"\\u0000{word}\"").as_bytes());
-            k += word.len();
-        } else {
-            quoted ^= rest[0] == b'"';
-            clean.push(rest[0]);
-            k += 1;
+    while k < text.len() {
+        let rest = &text[k..];
+        let begins = |word: &str| rest.starts_with(word.as_bytes());
+        let mut length = 1;
+        match (quote, rest[0]) {
+            (Some(_), b'\\') => {
+                length = rest.len().min(2);
+                // JSON has no escape of a single quote.
+                let begin = usize::from(rest.get(1) == Some(&b'\''));
+                clean.extend(&rest[begin..length]);
+            }
+            (Some(b'\''), b'"') => clean.extend(b"\\\""),
+            (Some(end), byte) => {
+                let is_end = byte == end;
+                clean.push(if is_end { b'"' } else { byte });
+                quote = quote.filter(|_| !is_end);
+            }
+            (None, byte @ (b'"' | b'\'')) => {
+                clean.push(b'"');
+                quote = Some(byte);
+            }
+            (None, byte) => {
+                if let Some(word) = WORDS.iter().find(|word| begins(word)) {
+                    clean.extend(format!("\"\\u0000{word}\"").as_bytes());
+                    length = word.len();
+                } else if let Some((word, json)) = TRUTH.iter().find(|(word, _)| begins(word)) {
+                    clean.extend(json.as_bytes());
+                    length = word.len();
+                } else {
+                    clean.push(byte);
+                }
+            }
         }
+        k += length;
     }
     clean
 }
@@ -190,5 +214,22 @@ mod tests {
             field("e", "", Mark::Blank("null")),
         ];
         assert_eq!(shown(line), expected);
+    }
+
+    #[test]
+    fn dictionaries_that_python_prints_are_objects() {
+        let line =
+            r#"{'t': 0.5, 'a "b"': None, "it's": True, 'c': 'it\'s \\ {', 'd': {'e': False}}"#;
+        let expected = [
+            field("t", "0.5", Mark::Text),
+            field("a \"b\"", "", Mark::Blank("None")),
+            field("it's", "true", Mark::Text),
+            field("c", "it's \\ {", Mark::Text),
+            field("d.e", "false", Mark::Text),
+        ];
+        assert_eq!(shown(line), expected);
+        for broken in ["{'t': 0.5", "{'t: 0.5}", "{'t': '}", "{'t': \\", "{t: 0.5}"] {
+            assert!(fields(broken.as_bytes()).is_err(), "{broken}");
+        }
     }
 }

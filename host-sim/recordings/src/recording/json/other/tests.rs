@@ -14,7 +14,7 @@ fn counts(text: &str) -> Vec<u32> {
 }
 
 /// The layouts of a log of three rows; each object has a field beside them that no row needs.
-const LAYOUTS: [&str; 18] = [
+const LAYOUTS: [&str; 20] = [
     r#"[{"t": 0, "counts_large": 5, "x": "a, [b"}, {"t": 0.001, "counts_large": 6}, {"t": 0.002, "counts_large": 8}]"#,
     "# a \"log\n# of [x], {\n[\n{\"t\": 0, \"counts_large\": 5},\n{\"t\": 0.001, \"counts_large\": 6}\n,{\"t\": 0.002, \"counts_large\": 8}\n]\n",
     "[\n  {\n    \"t\": 0,\n    \"counts_large\": 5,\n    \"x\": {\"y\": [1, \"}\\\"\"]}\n  },\n  {\n    \"t\": 0.001,\n    \
@@ -30,6 +30,8 @@ const LAYOUTS: [&str; 18] = [
     "// a log\n{\n  \"t\": [\n    0,\n    0.001,\n    0.002\n  ],\n  \"counts_large\": [5, 6, 8],\n  \"x\": [NaN, null, \"b\\n\"]\n}\n",
     r#"{"t": {"0": 0, "1": 0.001, "2": 0.002}, "counts_large": {"0": 5, "1": 6, "2": 8}}"#,
     r#"{"0": {"t": 0, "counts_large": 5}, "1": {"t": 0.001, "counts_large": 6}, "2": {"t": 0.002, "counts_large": 8}}"#,
+    "{'t': 0, 'counts_large': 5}\n{'t': 0.001, 'counts_large': 6, 'x': None}\n{'t': 0.002, 'counts_large': 8}\n",
+    "{'t': [0, 0.001, 0.002], 'x': True, 'counts_large': [5, 6, 8]}",
     r#"{"columns": ["t", "counts_large"], "index": [0, 1, 2], "data": [[0, 5], [0.001, 6], [0.002, 8]]}"#,
     r#"{"schema": {"fields": []}, "data": [{"t": 0, "counts_large": 5}, {"t": 0.001, "counts_large": 6}, {"t": 0.002, "counts_large": 8}]}"#,
     "{\"device\": {\"poles\": [1]},\n\"data\": [\n{\"t\": 0, \"counts_large\": 5},\n{\"t\": 0.001, \"counts_large\": 6},\n{\"t\": 0.002, \"counts_large\": 8}\n]}",
