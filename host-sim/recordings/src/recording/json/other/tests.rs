@@ -140,6 +140,25 @@ fn an_error_has_the_line_of_the_element_or_its_number() {
     }
 }
 
+/// A log with any wrong or missing byte is read or refused.
+#[test]
+fn wrong_bytes_are_no_panic() {
+    for text in LAYOUTS {
+        for at in (0..text.len()).filter(|at| text.is_char_boundary(*at)) {
+            let (before, rest) = text.split_at(at);
+            let after = rest.get(1..).unwrap_or_default();
+            for byte in ["", "[", "]", "}", "\"", "\n"] {
+                for text in [format!("{before}{byte}{after}"), format!("{before}{byte}")] {
+                    if let Err(error) = read(&text) {
+                        assert!(error.starts_with("r.json: "), "{text}: {error}");
+                        assert!(!error.contains('\n'), "{text}: {error}");
+                    }
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_position_with_fractions_is_offered_as_an_angle() {
     for (positions, unit) in [("[0, 2, 4]", "counts"), ("[0, 2.5, 4]", "rad")] {
