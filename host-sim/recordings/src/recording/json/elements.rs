@@ -7,7 +7,8 @@ const BLOCK: usize = 1 << 13;
 
 /// Reads a text with JSON as one with an element a line.
 ///
-/// An element that is an object stays an object; one that is a list becomes its values, separated by commas.
+/// An element that is an object stays an object; one that is a list, or a tuple as Python prints it, becomes its values,
+/// separated by commas.
 /// Its line is the one in which it begins, or the one after that of the element before if this is later: elements
 /// in one line are numbered from it.
 pub(super) struct Elements<R> {
@@ -71,13 +72,13 @@ impl<R: Read> Elements<R> {
             b'\n' => self.end_of_line(),
             b' ' | b'\t' | b'\r' => self.space(),
             b',' if inside == Some(0) => {}
-            b'{' | b'[' => {
+            b'{' | b'[' | b'(' => {
                 if inside.is_some_and(|inside| inside > 0 || byte == b'{') {
                     self.write(byte);
                 }
                 self.depth += 1;
             }
-            b'}' | b']' => {
+            b'}' | b']' | b')' => {
                 if inside.is_some_and(|inside| inside > 1 || (inside == 1 && byte == b'}')) {
                     self.write(byte);
                 }

@@ -47,7 +47,7 @@ impl Other {
                     inside
                 };
                 let is_list = |inside: &str| {
-                    let begin = inside.strip_prefix('[').map(str::trim_start);
+                    let begin = inside.strip_prefix(['[', '(']).map(str::trim_start);
                     begin.is_some_and(|begin| {
                         begin.is_empty() || begin.starts_with(|c| IN_LIST.contains(c))
                     })
@@ -59,6 +59,13 @@ impl Other {
                 } else {
                     return None;
                 }
+            }
+            Some(b'(') => {
+                let inside = first.strip_prefix('(')?.strip_suffix(')')?;
+                let are_numbers = inside
+                    .split(',')
+                    .all(|field| field.trim().parse::<f64>().is_ok());
+                are_numbers.then_some(Kind::Elements(0))?
             }
             Some(b'{') => {
                 Self::of_objects(first, text.nth(1), &lines().collect::<Vec<_>>().join("\n"))?

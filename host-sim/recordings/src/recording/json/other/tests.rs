@@ -81,6 +81,15 @@ fn lists_in_a_list_are_columns() {
             r#"{"t": [0, 0.001, 0.002], "motors": {"1": {"at": [5, 6, 8]}, "2": {"at": [1, 1, 1]}}}"#,
             "counts_large=motors.1.at",
         ),
+        // As Python prints tuples.
+        (
+            "(0.0, 5)\n(0.001, 6)\n(0.002, 8)\n",
+            "t=1:s,counts_large=2:counts",
+        ),
+        (
+            "[(0.0, 5), (0.001, 6), (0.002, 8)]",
+            "t=1:s,counts_large=2:counts",
+        ),
         // As numpy prints it.
         (
             "[[0.    5.   ]\n [0.001 6.   ]\n [0.002 8.   ]]\n",
@@ -122,6 +131,14 @@ fn an_error_has_the_line_of_the_element_or_its_number() {
         (
             "{\n \"t\": [0, 1],\n \"counts_large\": [5, 6\n",
             "line 1: no JSON object (EOF while parsing a list at line 4 column 0); correct it, or write",
+        ),
+        (
+            "{\"t\": 0, \"counts_large\": 5}\n{\"t\": 1, \"counts_large\": }\n",
+            "line 2: no JSON object on a line of its own (expected value at column 26); write one JSON object a line",
+        ),
+        (
+            "{\"t\": 0, \"counts_large\": 5}\n{\"t\": 1, \"counts_large\": 6},\n",
+            "line 2: no JSON object on a line of its own (trailing characters at column 28); write one JSON object",
         ),
         (
             r#"[{"t": 0, "counts_large": 5}, {"t": 1, "counts_large": 5}, {"t": 2, "cou"#,
@@ -180,6 +197,8 @@ fn what_has_one_object_a_line_or_no_json_is_left_as_it_is() {
         "{\"t\":0}\n",
         "[info] a log\nt,counts_large\n0,1\n0.001,2\n",
         "[\n",
+        "(c) A, (B)\nt,counts_large\n0,1\n",
+        "(1700000000.5) can0 141#00\n",
         "[[info]] a log\n",
         "t,x\n[1,2]\n",
         "",
