@@ -42,14 +42,23 @@ impl Lists {
     /// # Errors
     /// [`Failure::Input`] if it is no object, is longer than is kept in memory, or has lists of unequal length.
     pub(super) fn open(from: impl Read, line: u64, name: &str) -> Result<Option<Self>, Failure> {
+        Self::open_up_to(MOST, from, line, name)
+    }
+
+    /// As [`Lists::open`], of at most `most` bytes.
+    fn open_up_to(
+        most: u64,
+        from: impl Read,
+        line: u64,
+        name: &str,
+    ) -> Result<Option<Self>, Failure> {
         let refused = |what: &str| Failure::Input(format!("{name}: line {line}: {what}"));
         let mut text = Vec::new();
-        let read = from.take(MOST + 1).read_to_end(&mut text);
+        let read = from.take(most + 1).read_to_end(&mut text);
         read.map_err(|error| cannot_read(name, &error))?;
-        if text.len() as u64 > MOST {
-            let most = MOST >> 20;
+        if text.len() as u64 > most {
             return Err(refused(&format!(
-                "a JSON object of more than {most} MiB, which is kept in memory; {REMEDY}"
+                "a JSON object of more than {most} bytes, which is kept in memory; {REMEDY}"
             )));
         }
         if serde_json::from_slice::<&RawValue>(&text).is_err() {
@@ -236,5 +245,23 @@ impl<'de> Visitor<'de> for Members {
             members.push((key, value.get()));
         }
         Ok(members)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lists;
+
+    #[test]
+    fn an_object_is_kept_up_to_the_bytes_for_it() {
+        let text = "{\"t\": [0, 1, 2]}";
+        let open = |most| Lists::open_up_to(most, text.as_bytes(), 3, "r.json");
+        assert!(open(text.len() as u64).is_ok_and(|lists| lists.is_some()));
+        let error = open(text.len() as u64 - 1)
+            .err()
+            .map(|error| error.to_string());
+        let said =
+            "r.json: line 3: a JSON object of more than 15 bytes, which is kept in memory; write ";
+        assert!(error.is_some_and(|error| error.starts_with(said)));
     }
 }

@@ -129,6 +129,14 @@ fn an_error_has_the_line_of_the_element_or_its_number() {
             "line 2: one JSON object without lists of two values and more; write one JSON object a line",
         ),
         (
+            r#"{"t": [0], "counts_large": [5]}"#,
+            "line 1: column t: '[0]' is not a number",
+        ),
+        (
+            "{\n \"t\": [0],\n \"counts_large\": [5]\n}\n",
+            "line 1: one JSON object without lists of two values and more; write one JSON object a line",
+        ),
+        (
             "{\n \"t\": [0, 1],\n \"counts_large\": [5, 6\n",
             "line 1: no JSON object (EOF while parsing a list at line 4 column 0); correct it, or write",
         ),
