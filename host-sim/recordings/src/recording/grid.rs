@@ -176,6 +176,24 @@ mod tests {
     }
 
     #[test]
+    fn every_change_may_be_several_steps() {
+        let mut grid = Grid::default();
+        (0..400).for_each(|k| grid.add(8.0 * f64::from(3 + k % 3)));
+        assert_eq!(grid.step(), Some(8.0));
+    }
+
+    #[test]
+    fn thirty_changes_determine_a_step() {
+        let mut grid = Grid::default();
+        for k in 0..29 {
+            grid.add(f64::from(1 + k % 3));
+        }
+        assert_eq!(grid.step(), None);
+        grid.add(1.0);
+        assert_eq!(grid.step(), Some(1.0));
+    }
+
+    #[test]
     fn memory_is_bounded() {
         let mut grid = Grid::default();
         (0..5000).for_each(|k| grid.add(f64::from(k)));

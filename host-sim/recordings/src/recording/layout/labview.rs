@@ -149,6 +149,8 @@ mod tests {
         options.set_row_rate(1000.0).unwrap();
         let recording = Recording::parse_as(text.as_bytes(), "r.csv", &options).unwrap();
         check(&recording, "no time");
+        let error = read(&text.replace("0,001000\t", "0,000000\t"), "").unwrap_err();
+        assert!(error.contains("--row-rate HZ"), "{error}");
     }
 
     #[test]
