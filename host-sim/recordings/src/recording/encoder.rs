@@ -279,7 +279,11 @@ mod tests {
             "{notes:?}"
         );
         // Whole turns are no steps of an encoder.
-        let turns = swing(1.0, |turns| turns.to_string(), "counts_large=counts_large:rev");
+        let turns = swing(
+            1.0,
+            |turns| turns.to_string(),
+            "counts_large=counts_large:rev",
+        );
         let said = "counts_large: positions change by multiples of 4096 counts alone with 4096 counts/rev; if the \
                     encoder has more counts, give them with ";
         assert!(turns[0].starts_with(said), "{turns:?}");
