@@ -116,10 +116,12 @@ impl<R: Read> Elements<R> {
 
     fn end_of_line(&mut self) {
         self.behind += 1;
-        match self.is_begun && self.depth <= self.around {
-            true => self.end_element(),
-            false if self.is_begun => self.space(),
-            false => self.catch_up(),
+        if !self.is_begun {
+            self.catch_up();
+        } else if self.depth > self.around {
+            self.space();
+        } else {
+            self.end_element();
         }
     }
 

@@ -15,6 +15,15 @@ const WORD: char = '\0';
 /// `arbitrary_precision` is on. Another package may turn it on.
 const NUMBER: &str = "$serde_json::private::Number";
 
+/// The name of a member `key` of an object called `outer`: both names, but for the log's object, which has none, and for
+/// `data`.
+pub(super) fn name_inside(outer: &str, key: String) -> String {
+    match outer {
+        "" | "data" => key,
+        outer => format!("{outer}.{key}"),
+    }
+}
+
 /// The fields of the object in a line.
 pub(super) fn fields(line: &[u8]) -> Result<Vec<Field>, serde_json::Error> {
     let parse = |line: &[u8]| {
@@ -60,20 +69,13 @@ impl<'de> Visitor<'de> for Inside<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let prefix = match self.name.as_str() {
-            "" | "data" => String::new(),
-            name => format!("{name}."),
-        };
         while let Some(name) = map.next_key::<String>()? {
             if name == NUMBER {
                 let text = map.next_value()?;
                 self.field(text, Mark::Text);
                 return Ok(());
             }
-            let name = match prefix.is_empty() {
-                true => name,
-                false => format!("{prefix}{name}"),
-            };
+            let name = name_inside(&self.name, name);
             map.next_value_seed(Inside { name, to: self.to })?;
         }
         Ok(())

@@ -13,7 +13,7 @@ use terminal::failure::Failure;
 use crate::log::cannot_read;
 
 use super::REMEDY;
-use super::fields::with_words;
+use super::fields::{name_inside, with_words};
 
 /// Most bytes of the object, which is kept in memory.
 const MOST: u64 = 1 << 28;
@@ -214,11 +214,7 @@ fn collect<'a>(
             let before = to.len();
             let values: Vec<_> = members.iter().map(|(_, value)| *value).collect();
             for (key, value) in members {
-                let inner = match name.as_str() {
-                    "" | "data" => key.into_owned(),
-                    name => format!("{name}.{key}"),
-                };
-                collect(inner, value, to)?;
+                collect(name_inside(&name, key.into_owned()), value, to)?;
             }
             if is_list && to.len() == before {
                 to.push((name, values));
