@@ -73,8 +73,19 @@ impl Browser {
         })
     }
 
-    /// Sends a command and waits for its answer.
+    /// The result of a command, which must succeed.
     fn call(&mut self, session: Option<&str>, method: &str, parameters: &Value) -> Value {
+        self.answer(session, method, parameters)
+            .unwrap_or_else(|error| panic!("{method}: {error}"))
+    }
+
+    /// Sends a command and waits for its answer: its result, or its error.
+    fn answer(
+        &mut self,
+        session: Option<&str>,
+        method: &str,
+        parameters: &Value,
+    ) -> Result<Value, Value> {
         self.number += 1;
         let number = self.number;
         let mut message = json!({"id": number, "method": method, "params": parameters});
@@ -88,8 +99,10 @@ impl Browser {
         while Instant::now() < end {
             let Some(message) = self.read() else { continue };
             if message["id"] == number {
-                assert!(message["error"].is_null(), "{method}: {}", message["error"]);
-                return message["result"].clone();
+                return match &message["error"] {
+                    Value::Null => Ok(message["result"].clone()),
+                    error => Err(error.clone()),
+                };
             }
         }
         panic!("{method}: no answer");
@@ -191,25 +204,34 @@ impl Browser {
         self.call(Some(&tab.session), method, parameters)
     }
 
-    /// The value of an expression in a tab.
+    /// The value of an expression in a tab, whose page must stay meanwhile.
     pub(crate) fn value(&mut self, tab: &Tab, expression: &str) -> Value {
+        self.evaluated(tab, expression)
+            .unwrap_or_else(|error| panic!("{expression}: {error}"))
+    }
+
+    /// The value of an expression in a tab, or the error of DevTools.
+    fn evaluated(&mut self, tab: &Tab, expression: &str) -> Result<Value, Value> {
         let parameters =
             json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
-        let result = self.tell(tab, "Runtime.evaluate", &parameters);
+        let result = self.answer(Some(&tab.session), "Runtime.evaluate", &parameters)?;
         assert!(
             result["exceptionDetails"].is_null(),
             "{expression}: {}",
             result["exceptionDetails"]
         );
-        result["result"]["value"].clone()
+        Ok(result["result"]["value"].clone())
     }
 
-    /// Waits until an expression is true.
+    /// Waits until an expression is true. A page that loads anew while it is asked counts as not yet true.
     pub(crate) fn wait(&mut self, tab: &Tab, expression: &str) {
         let end = Instant::now() + LIMIT;
         let mut last = Value::Null;
         while Instant::now() < end {
-            last = self.value(tab, &format!("(() => {{ try {{ return {expression}; }} catch (e) {{ return String(e); }} }})()"));
+            let guarded = format!(
+                "(() => {{ try {{ return {expression}; }} catch (e) {{ return String(e); }} }})()"
+            );
+            last = self.evaluated(tab, &guarded).unwrap_or_else(|error| error);
             if last == true {
                 return;
             }
