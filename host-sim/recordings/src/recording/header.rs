@@ -167,6 +167,7 @@ pub(super) fn found(layout: &Layout) -> String {
     let other = other.unwrap_or_default();
     match number {
         0 | 1 => format!("found: '{shown}{more}'{other}"),
+        _ if layout.named_values => format!("found: {shown}{more}"),
         _ => format!(
             "found: {shown}{more}, separated by {}{other}",
             layout.separator.name()
@@ -227,6 +228,11 @@ mod tests {
                 "# a log\nsome text\n\nstamp angle\n0 1\n1 2\n",
                 "line 4: no column t; found: stamp; angle, separated by spaces; name the columns and \
                  units, for example --column 't=stamp:s,counts_large=angle:counts'",
+            ),
+            // Values with names have no separator.
+            (
+                "{\"x\": 0, \"angle\": 1}\n{\"x\": 0.1, \"angle\": 2}\n",
+                "line 1: no column t; found: x; angle; name the columns",
             ),
             (
                 "__time,/a/position,/b/position\n0,0.1,0.2\n",

@@ -27,6 +27,8 @@ pub(super) const SEARCHED: usize = 500;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
     pub(super) separator: Separator,
+    /// Whether each value has its name beside it, as in JSON, and no separator is seen.
+    pub(super) named_values: bool,
     /// Names of the columns, or their numbers from 1 where the text has no header.
     pub(super) names: Vec<String>,
     /// Units of the columns in a line of their own; empty without one.
@@ -117,6 +119,7 @@ impl Layout {
         }
         Self {
             separator,
+            named_values: false,
             names,
             units: Vec::new(),
             line: index as u64 + 1,
@@ -128,6 +131,14 @@ impl Layout {
             is_stamped: false,
             remarks: false,
             row_rate_hz: None,
+        }
+    }
+
+    /// The layout of values with these names beside them.
+    pub(super) fn named_values(names: Vec<String>) -> Self {
+        Self {
+            named_values: true,
+            ..Self::header(Separator::Comma, names, 0)
         }
     }
 

@@ -16,7 +16,6 @@ use super::lines::LINE_REMEDY;
 use super::long::{self, Long};
 use super::options::ReadOptions;
 use super::row::Row;
-use super::separator::Separator;
 use super::text::Text;
 use super::value_changes::{self, ValueChanges};
 
@@ -78,7 +77,7 @@ impl<'a> Records<'a> {
         let named = |names: &[String], line| Layout {
             line,
             is_stamped: is_stamped(&text),
-            ..Layout::header(Separator::Comma, names.to_vec(), 0)
+            ..Layout::named_values(names.to_vec())
         };
         let (layout, source) = if value_changes::is_begin(&text) {
             let (changes, layout) = ValueChanges::open(input, name)?;

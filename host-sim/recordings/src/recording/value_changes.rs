@@ -11,7 +11,6 @@ use vcd::{Command, IdCode, ParseError, Parser, Value, Vector};
 use terminal::failure::Failure;
 
 use super::layout::{Layout, UNKNOWN};
-use super::separator::Separator;
 use crate::log::cannot_read;
 
 /// The commands that such a file may begin with.
@@ -104,7 +103,7 @@ impl<R: BufRead> ValueChanges<R> {
             .filter(|(variable, _)| variable.is_bit);
         let layout = Layout {
             two_levels: bits.map(|(_, place)| place).collect(),
-            ..Layout::header(Separator::Comma, names, 0)
+            ..Layout::named_values(names)
         };
         let values = vec![UNKNOWN.to_owned(); layout.names.len()];
         let dump = Self {
