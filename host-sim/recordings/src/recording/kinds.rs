@@ -2,34 +2,69 @@
 
 use terminal::failure::Failure;
 
-/// First bytes of a file, what it is, and the remedy.
-const KINDS: [(&[u8], &str, &str); 13] = [
-    (b"PK\x03\x04", "a zip file", "unpack it with unzip -p"),
+/// First bytes of a file, bytes that are among the further ones, what it is, and the remedy.
+const KINDS: [(&[u8], &[u8], &str, &str); 23] = [
+    (ZIP, b"xl/", "a workbook of Excel", SHEET),
+    (ZIP, b"opendocument.spreadsheet", "a spreadsheet", SHEET),
+    (ZIP, b".npy", "a file of NumPy", NUMPY),
+    (ZIP, b"", "a zip file", "unpack it with unzip -p"),
+    (b"\xD0\xCF\x11\xE0", b"", "a workbook of Excel", SHEET),
+    (b"\x93NUMPY", b"", "a file of NumPy", NUMPY),
     (
         b"\x28\xB5\x2F\xFD",
+        b"",
         "a zstd file",
         "unpack it with zstd -dc",
     ),
-    (b"\xFD7zXZ", "an xz file", "unpack it with xz -dc"),
-    (b"BZh", "a bzip2 file", "unpack it with bzip2 -dc"),
-    (b"PAR1", "a Parquet file", "write it as CSV"),
-    (b"\x89HDF", "an HDF5 file", "write it as CSV"),
-    (b"MATLAB 5.0 MAT", "a file of MATLAB", "write it as CSV"),
-    (b"\x89MCAP", "an MCAP file", "write it as CSV"),
-    (b"TDSm", "a TDMS file of LabVIEW", "write it as CSV or LVM"),
+    (b"\xFD7zXZ", b"", "an xz file", "unpack it with xz -dc"),
+    (b"BZh", b"", "a bzip2 file", "unpack it with bzip2 -dc"),
+    (
+        b"7z\xBC\xAF\x27\x1C",
+        b"",
+        "a 7z file",
+        "unpack it with 7z x -so",
+    ),
+    (b"PAR1", b"", "a Parquet file", CSV),
+    (b"ARROW1", b"", "a Feather file", CSV),
+    (b"\x89HDF", b"", "an HDF5 file", CSV),
+    (b"MATLAB 5.0 MAT", b"", "a file of MATLAB", MATLAB),
+    (b"MATLAB 7.3 MAT", b"", "a file of MATLAB", MATLAB),
+    (b"\x89MCAP", b"", "an MCAP file", CSV),
+    (
+        b"TDSm",
+        b"",
+        "a TDMS file of LabVIEW",
+        "write it as CSV or LVM",
+    ),
     (
         b"<SALEAE>",
+        b"",
         "a binary export of Logic 2",
         "export the lines as CSV",
     ),
-    (b"#ROSBAG", "a bag of ROS 1", "write a topic as CSV"),
+    (b"#ROSBAG", b"", "a bag of ROS 1", "write a topic as CSV"),
     (
         b"SQLite format 3",
+        b"",
         "an SQLite database, as a bag of ROS 2",
         "write a topic as CSV",
     ),
-    (b"ULog", "a ULog of PX4", "write it as CSV with ulog2csv"),
+    (
+        b"ULog",
+        b"",
+        "a ULog of PX4",
+        "write it as CSV with ulog2csv",
+    ),
+    (b"MDF     ", b"", "an MDF file", CSV),
+    (b"LOGG", b"", "a BLF file of Vector", CSV),
 ];
+
+const ZIP: &[u8] = b"PK\x03\x04";
+const CSV: &str = "write it as CSV";
+const SHEET: &str = "save the sheet as CSV";
+const NUMPY: &str =
+    "write the columns with numpy.savetxt, or give the arrays to limpid.replay in Python";
+const MATLAB: &str = "write the columns with writetable";
 
 /// Bytes that are searched for control characters.
 const SEARCHED: usize = 256;
@@ -43,7 +78,11 @@ const CONTROL_PART: usize = 20;
 /// [`Failure::Input`] with the remedy.
 pub(crate) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
     let refused = |what: &str| Err(Failure::Input(format!("{name}: line 1: {what}")));
-    if let Some((_, what, remedy)) = KINDS.iter().find(|(begin, ..)| head.starts_with(begin)) {
+    let is_kind = |(begin, inside, ..): &&(&[u8], &[u8], &str, &str)| {
+        let contains = || head.windows(inside.len()).any(|part| part == *inside);
+        head.starts_with(begin) && (inside.is_empty() || contains())
+    };
+    if let Some((_, _, what, remedy)) = KINDS.iter().find(is_kind) {
         return refused(&format!("this is {what}; {remedy}, or give the text as -"));
     }
     let head = &head[..head.len().min(SEARCHED)];
@@ -70,6 +109,17 @@ mod tests {
             "r.csv: line 1: this is a zip file; unpack it with unzip -p, or give the text as -"
         );
         assert!(error(b"\x28\xB5\x2F\xFDxyz").contains("unpack it with zstd -dc"));
+        let workbook =
+            error(b"PK\x03\x04\x14\0docProps/app.xml\0PK\x03\x04\x14\0xl/theme/theme1.xml");
+        assert!(
+            workbook.contains("this is a workbook of Excel; save the sheet as CSV, or"),
+            "{workbook}"
+        );
+        let arrays = error(b"PK\x03\x04\x2D\0arr_0.npy\x93NUMPY");
+        assert!(
+            arrays.contains("this is a file of NumPy; write"),
+            "{arrays}"
+        );
         assert!(
             error(b"#ROSBAG V2.0\n").contains("this is a bag of ROS 1; write a topic as CSV, or")
         );
