@@ -19,9 +19,12 @@ const PIECES: usize = 12;
 /// Range of the natural logarithm of the jerk's density, counts^2/period^5.
 const JERK: [f64; 2] = [-37.0, 7.0];
 
-/// Range of the natural logarithm of the sensor's variance, counts^2: a thousandth of a count to one
-/// count.
-const SENSOR: [f64; 2] = [-13.8, 0.0];
+/// Range of the natural logarithm of the sensor's variance, counts^2: a deviation of a thousandth of a
+/// count to 10 000 counts.
+const SENSOR: [f64; 2] = [-13.8, 18.4];
+
+/// Natural logarithms of the sensor's variance at which the search may start.
+const SENSORS: [f64; 5] = [-9.0, -4.0, 1.0, 6.0, 12.0];
 
 /// Size of the simplex at which the search ends, in natural logarithms.
 const END: f64 = 0.02;
@@ -73,7 +76,7 @@ pub(super) fn most_likely(recording: &Recording, motion: &Motion, period_s: f64)
 /// The best point of a coarse grid.
 fn start(loss: impl Fn(Logarithms) -> f64) -> Logarithms {
     let jerks = (0..10).map(|i| JERK[0] + (JERK[1] - JERK[0]) * f64::from(i) / 9.0);
-    let points = jerks.flat_map(|jerk| [-9.0, -4.0].map(|sensor| [jerk, sensor]));
+    let points = jerks.flat_map(|jerk| SENSORS.map(|sensor| [jerk, sensor]));
     let losses = points.map(|point| (loss(point), point));
     let best = losses.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or([0.0, -4.0], |(_, point)| point)

@@ -34,12 +34,12 @@ pub(super) struct Smoothed {
     pub variance: f64,
 }
 
-/// The state before the first observation: at rest in the middle of the cell, with deviations as large
-/// as the fastest motion.
+/// The state before the first observation: at rest in the middle of its cell, with a deviation of a count
+/// and ten times the sensor's, and with deviations of the motion as large as the fastest one.
 fn start(model: Model) -> Moments {
     let spread = 4.0 * model.fastest.max(1.0).powi(2);
     let mut covariance = [[0.0; 3]; 3];
-    covariance[0][0] = 1.0;
+    covariance[0][0] = 1.0 + 100.0 * model.sensor;
     covariance[1][1] = spread;
     covariance[2][2] = spread;
     Moments {

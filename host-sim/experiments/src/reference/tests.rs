@@ -90,6 +90,32 @@ fn likelihood_recovers_the_noises_of_a_synthetic_recording() {
     assert!((noises.sensor - SENSOR).abs() < 0.004, "{}", noises.sensor);
 }
 
+/// A log of a magnetic encoder, or of one whose position is asked for over a bus.
+#[test]
+fn noise_of_many_counts_is_no_motion() {
+    for (seed, deviation) in [(11, 6.0), (12, 60.0), (13, 300.0)] {
+        let mut recording = synthetic(20_000, seed);
+        recording.trace.edges = None;
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(100 + seed);
+        for count in &mut recording.trace.counts_large {
+            let noise: f64 = StandardNormal.sample(&mut random);
+            *count = count.wrapping_add((deviation * noise).round() as i64 as u32);
+        }
+        let reference = Reference::of(&recording, 4096).unwrap();
+        // 20 000 rows: three deviations are 3 %.
+        let ratio = reference.noises.sensor / (deviation * deviation);
+        assert!((0.96..1.04).contains(&ratio), "{deviation} counts: {ratio}");
+        let error = normalised_error(&reference, &recording, 4096);
+        // From 40 independent values on.
+        let jerk = reference.noises.jerk / (JERK * 1e15);
+        assert!(
+            (0.5..2.0).contains(&jerk),
+            "{deviation} counts: jerk off by {jerk}"
+        );
+        assert!((0.7..1.4).contains(&error), "{deviation} counts: {error}");
+    }
+}
+
 #[test]
 fn standard_deviation_of_a_synthetic_recording_is_that_of_the_error() {
     for stamped in [false, true] {
