@@ -101,6 +101,30 @@ fn farthest_impact_leaves_the_variance_of_the_start() {
     assert_eq!(state.members[1].covariance[3], before + 1000.0);
 }
 
+/// Without an edge an impact is as far off as the interval moves the last member.
+#[test]
+fn interval_says_how_far_off_the_last_member_is() {
+    let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
+    for (member, position) in state.members.iter_mut().zip([0.1, -40.0]) {
+        member.position = position;
+        member.covariance[0] = 1e-2;
+    }
+    let off = state.correct_by_interval(&Ends::of(true), false).off;
+    assert_eq!(off, state.members[1].position + 40.0);
+    // The nearer end of the interval is 0.5 counts from its middle.
+    assert!((30.0..41.0).contains(&off), "{off}");
+}
+
+#[test]
+fn the_two_members_that_are_left_keep_their_rungs() {
+    let mut state = ModelBankState::<3>::start(Count(0), 1e-3);
+    state.rung = 5;
+    for (weights, rung) in [([0.3, 0.5, 0.2], 5), ([0.2, 0.5, 0.3], 6)] {
+        state.weights = weights;
+        assert_eq!(state.narrowed().rung, rung);
+    }
+}
+
 #[test]
 fn a_change_of_the_noise_keeps_every_member_possible() {
     let mut state = ModelBankState::<2>::start(Count(0), 1e-3);
