@@ -45,6 +45,9 @@ pub const FEWEST_CHANGES: usize = 30;
 /// reference's own error is more than half of what the score measures.
 pub const RESOLVED: f64 = 1.5;
 
+/// Smallest standard deviation of the sensor's noise that is reported, counts. An exact encoder has less.
+const NOISY: f64 = 0.5;
+
 /// Rows of a piece that is smoothed at a time.
 const PIECE: usize = 65_536;
 
@@ -156,10 +159,18 @@ impl Reference {
     #[must_use]
     pub fn limits(&self, rate_hz: f64) -> String {
         let sd = self.rms_sd(rate_hz);
+        let noise = self.noises.sensor.sqrt();
+        let noise = match noise >= NOISY {
+            true => format!(
+                "; counts and times have a noise of {} counts (standard deviation)",
+                number(Some(noise))
+            ),
+            false => String::new(),
+        };
         format!(
             "the reference is smoothed from the counts in both directions of time; its standard \
              deviation is {} rad/s (RMS), so errors below {} rad/s rank no estimator. It does not \
-             resolve motion above about {:.0} Hz, motion within a count, and errors of the encoder's disc",
+             resolve motion above about {:.0} Hz, motion within a count, and errors of the encoder's disc{noise}",
             number(Some(sd)),
             number(Some(RESOLVED * sd)),
             self.bandwidth_hz

@@ -88,6 +88,8 @@ fn likelihood_recovers_the_noises_of_a_synthetic_recording() {
     assert!((1.0 / 1.8..1.8).contains(&factor), "jerk off by {factor}");
     // 20 000 rows with the variance R + 1/12: three deviations are 0.004.
     assert!((noises.sensor - SENSOR).abs() < 0.004, "{}", noises.sensor);
+    let said = Reference::with(&recording, 4096, noises).limits(1e3);
+    assert!(!said.contains("noise"), "{said}");
 }
 
 /// A log of a magnetic encoder, or of one whose position is asked for over a bus.
@@ -113,6 +115,13 @@ fn noise_of_many_counts_is_no_motion() {
             "{deviation} counts: jerk off by {jerk}"
         );
         assert!((0.7..1.4).contains(&error), "{deviation} counts: {error}");
+        let said = reference.limits(1e3);
+        let found = said
+            .split_once("counts and times have a noise of ")
+            .unwrap()
+            .1;
+        let found: f64 = found.split_once(" counts (").unwrap().0.parse().unwrap();
+        assert!((found / deviation - 1.0).abs() < 0.03, "{said}");
     }
 }
 
