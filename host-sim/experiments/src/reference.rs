@@ -162,7 +162,7 @@ impl Reference {
         let noise = self.noises.sensor.sqrt();
         let noise = match noise >= NOISY {
             true => format!(
-                "; counts and times have a noise of {} counts (standard deviation)",
+                "; counts and times have a noise of {} counts (standard deviation), and tune finds settings for it",
                 number(Some(noise))
             ),
             false => String::new(),
