@@ -123,6 +123,14 @@ mod tests {
         assert!(
             error(b"#ROSBAG V2.0\n").contains("this is a bag of ROS 1; write a topic as CSV, or")
         );
+        // 12 of 256 bytes are less than a twentieth.
+        let controls = |number| {
+            let mut bytes = vec![1; number];
+            bytes.resize(256, b'x');
+            error(&bytes)
+        };
+        assert!(!controls(12).contains("not text"), "{}", controls(12));
+        assert!(controls(13).contains("the file is not text"));
         let binary: Vec<u8> = (0..=255).collect();
         assert_eq!(
             error(&binary),

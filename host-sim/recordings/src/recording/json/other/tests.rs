@@ -101,6 +101,23 @@ fn lists_in_a_list_are_columns() {
     }
 }
 
+/// A short list, as of settings or events, is no column; one that is nearly as long as the others is a damaged one.
+#[test]
+fn a_list_of_half_the_rows_is_left_out() {
+    let text = |list: &str| {
+        format!(
+            r#"{{"t": [0, 0.1, 0.2, 0.3, 0.4, 0.5], "counts_large": [5, 6, 7, 8, 9, 9], "gains": [{list}]}}"#
+        )
+    };
+    let read_counts = read(&text("1, 2, 3")).unwrap().trace.counts_large;
+    assert_eq!(read_counts, [5, 6, 7, 8, 9, 9]);
+    let error = read(&text("1, 2, 3, 4")).unwrap_err();
+    assert!(
+        error.contains("list gains: 4 values where the longest list has 6"),
+        "{error}"
+    );
+}
+
 #[test]
 fn an_error_has_the_line_of_the_element_or_its_number() {
     for (text, said) in [
