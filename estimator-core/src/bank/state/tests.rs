@@ -109,7 +109,7 @@ fn interval_says_how_far_off_the_last_member_is() {
         member.position = position;
         member.covariance[0] = 1e-2;
     }
-    let off = state.correct_by_interval(&Ends::of(true), false).off;
+    let off = state.correct_by_interval(Ends::of(true), false).off;
     assert_eq!(off, state.members[1].position + 40.0);
     // The nearer end of the interval is 0.5 counts from its middle.
     assert!((30.0..41.0).contains(&off), "{off}");
