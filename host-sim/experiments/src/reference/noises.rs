@@ -16,8 +16,12 @@ const PIECE: usize = 2000;
 /// Most pieces, which are spread evenly over a long recording.
 const PIECES: usize = 12;
 
-/// Range of the natural logarithm of the jerk's density, counts^2/period^5.
-const JERK: [f64; 2] = [-37.0, 7.0];
+/// Range of the natural logarithm of the jerk's density, counts^2/period^5. The upper end is beyond every
+/// motion: a density that is too small would make the sensor's variance too large.
+const JERK: [f64; 2] = [-37.0, 31.0];
+
+/// Number of the jerk's densities at which the search may start.
+const JERKS: u8 = 15;
 
 /// Range of the natural logarithm of the sensor's variance, counts^2: a deviation of a thousandth of a
 /// count to 10 000 counts.
@@ -25,6 +29,9 @@ const SENSOR: [f64; 2] = [-13.8, 18.4];
 
 /// Natural logarithms of the sensor's variance at which the search may start.
 const SENSORS: [f64; 5] = [-9.0, -4.0, 1.0, 6.0, 12.0];
+
+/// Number of searches: the likelihood can have a maximum where the sensor is exact, and another one.
+const SEARCHES: usize = 3;
 
 /// Size of the simplex at which the search ends, in natural logarithms.
 const END: f64 = 0.02;
@@ -70,20 +77,31 @@ pub(super) fn most_likely(recording: &Recording, motion: &Motion, period_s: f64)
         // The order of the losses has no place for a NaN of either sign.
         if loss.is_nan() { f64::INFINITY } else { loss }
     };
-    model(minimum(loss, start(loss)))
+    let found = starts(loss).into_iter().map(|start| minimum(loss, start));
+    let best = found.min_by(|a, b| a.0.total_cmp(&b.0));
+    model(best.map_or([0.0, -4.0], |(_, point)| point))
 }
 
-/// The best point of a coarse grid.
-fn start(loss: impl Fn(Logarithms) -> f64) -> Logarithms {
-    let jerks = (0..10).map(|i| JERK[0] + (JERK[1] - JERK[0]) * f64::from(i) / 9.0);
-    let points = jerks.flat_map(|jerk| SENSORS.map(|sensor| [jerk, sensor]));
-    let losses = points.map(|point| (loss(point), point));
-    let best = losses.min_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or([0.0, -4.0], |(_, point)| point)
+/// A value of the loss and its place.
+type Valued = (f64, Logarithms);
+
+/// The places of a coarse grid from which the minimum is searched: the best one of each variance of the
+/// sensor, of the best variances.
+fn starts(loss: impl Fn(Logarithms) -> f64) -> Vec<Logarithms> {
+    let spacing = (JERK[1] - JERK[0]) / f64::from(JERKS - 1);
+    let jerks = || (0..JERKS).map(|i| JERK[0] + spacing * f64::from(i));
+    let best = |sensor: f64| {
+        let valued = jerks().map(|jerk| (loss([jerk, sensor]), [jerk, sensor]));
+        valued.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let mut starts: Vec<Valued> = SENSORS.into_iter().filter_map(best).collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let starts = starts.into_iter().take(SEARCHES);
+    starts.map(|(_, point)| point).collect()
 }
 
 /// Minimum near `start` by the simplex of Nelder and Mead.
-fn minimum(loss: impl Fn(Logarithms) -> f64, start: Logarithms) -> Logarithms {
+fn minimum(loss: impl Fn(Logarithms) -> f64, start: Logarithms) -> Valued {
     let [x, y] = start;
     let valued = |point: Logarithms| (loss(point), point);
     let mut simplex = [[x, y], [x + 3.0, y], [x, y + 2.0]].map(valued);
@@ -122,5 +140,5 @@ fn minimum(loss: impl Fn(Logarithms) -> f64, start: Logarithms) -> Logarithms {
         }
     }
     simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
-    simplex[0].1
+    simplex[0]
 }

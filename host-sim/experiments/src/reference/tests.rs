@@ -125,6 +125,35 @@ fn noise_of_many_counts_is_no_motion() {
     }
 }
 
+/// A fast motion of an encoder with many counts that is read seldom: 1e5 counts a row.
+#[test]
+fn fast_motion_of_many_counts_is_no_noise() {
+    let [slow, fast] = [TAU * 5.0, TAU * 20.0];
+    let mut trace = Trace {
+        rate_hz: 1e2,
+        ..Trace::default()
+    };
+    let (mut t, mut truth) = (Vec::new(), Vec::new());
+    for k in 0..3000 {
+        let now = f64::from(k) * 1e-2;
+        let angle = (slow * now).sin() + 0.2 * (fast * now + 0.3).sin();
+        let count = (angle * 1e6 / TAU).floor() as i64;
+        trace.counts_large.push(count as u32);
+        truth.push(slow * (slow * now).cos() + 0.2 * fast * (fast * now + 0.3).cos());
+        t.push(now);
+    }
+    let recording = Recording {
+        t,
+        trace,
+        ..Recording::default()
+    };
+    let reference = Reference::of(&recording, 1_000_000).unwrap();
+    let squares = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
+    let errors = reference.omega.iter().zip(&truth).map(|(a, b)| a - b);
+    let error = squares(&mut errors.skip(100)) / squares(&mut truth.iter().copied());
+    assert!(error.sqrt() < 0.01, "{}", error.sqrt());
+}
+
 #[test]
 fn standard_deviation_of_a_synthetic_recording_is_that_of_the_error() {
     for stamped in [false, true] {
