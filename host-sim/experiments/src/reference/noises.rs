@@ -85,8 +85,8 @@ pub(super) fn most_likely(recording: &Recording, motion: &Motion, period_s: f64)
 /// A value of the loss and its place.
 type Valued = (f64, Logarithms);
 
-/// The places of a coarse grid from which the minimum is searched: the best one of each variance of the
-/// sensor, of the best variances.
+/// The places from which the minimum is searched: with each variance of the sensor the best density of the
+/// jerk on a coarse grid, and of these the best [`SEARCHES`].
 fn starts(loss: impl Fn(Logarithms) -> f64) -> Vec<Logarithms> {
     let spacing = (JERK[1] - JERK[0]) / f64::from(JERKS - 1);
     let jerks = || (0..JERKS).map(|i| JERK[0] + spacing * f64::from(i));
