@@ -108,7 +108,7 @@ fn noise_of_many_counts_is_no_motion() {
         let ratio = reference.noises.sensor / (deviation * deviation);
         assert!((0.96..1.04).contains(&ratio), "{deviation} counts: {ratio}");
         let error = normalised_error(&reference, &recording, 4096);
-        // From 40 independent values on.
+        // At least 40 independent values are resolved: three deviations are a factor of 2, and a third of the error.
         let jerk = reference.noises.jerk / (JERK * 1e15);
         assert!(
             (0.5..2.0).contains(&jerk),
@@ -125,7 +125,7 @@ fn noise_of_many_counts_is_no_motion() {
     }
 }
 
-/// A fast motion of an encoder with many counts that is read seldom: 1e5 counts a row.
+/// A fast motion of an encoder with many counts that is read seldom: up to 1e5 counts a row.
 #[test]
 fn fast_motion_of_many_counts_is_no_noise() {
     let [slow, fast] = [TAU * 5.0, TAU * 20.0];

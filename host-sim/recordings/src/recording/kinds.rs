@@ -2,64 +2,55 @@
 
 use terminal::failure::Failure;
 
-/// First bytes of a file, bytes that are among the further ones, what it is, and the remedy.
-const KINDS: [(&[u8], &[u8], &str, &str); 23] = [
-    (ZIP, b"xl/", "a workbook of Excel", SHEET),
-    (ZIP, b"opendocument.spreadsheet", "a spreadsheet", SHEET),
-    (ZIP, b".npy", "a file of NumPy", NUMPY),
-    (ZIP, b"", "a zip file", "unpack it with unzip -p"),
-    (b"\xD0\xCF\x11\xE0", b"", "a workbook of Excel", SHEET),
-    (b"\x93NUMPY", b"", "a file of NumPy", NUMPY),
+/// First bytes of a file, what it is, and the remedy.
+const KINDS: [(&[u8], &str, &str); 20] = [
+    (ZIP, "a zip file", "unpack it with unzip -p"),
+    (b"\xD0\xCF\x11\xE0", "a workbook of Excel", SHEET),
+    (b"\x93NUMPY", "a file of NumPy", NUMPY),
     (
         b"\x28\xB5\x2F\xFD",
-        b"",
         "a zstd file",
         "unpack it with zstd -dc",
     ),
-    (b"\xFD7zXZ", b"", "an xz file", "unpack it with xz -dc"),
-    (b"BZh", b"", "a bzip2 file", "unpack it with bzip2 -dc"),
+    (b"\xFD7zXZ", "an xz file", "unpack it with xz -dc"),
+    (b"BZh", "a bzip2 file", "unpack it with bzip2 -dc"),
     (
         b"7z\xBC\xAF\x27\x1C",
-        b"",
         "a 7z file",
         "unpack it with 7z x -so",
     ),
-    (b"PAR1", b"", "a Parquet file", CSV),
-    (b"ARROW1", b"", "a Feather file", CSV),
-    (b"\x89HDF", b"", "an HDF5 file", CSV),
-    (b"MATLAB 5.0 MAT", b"", "a file of MATLAB", MATLAB),
-    (b"MATLAB 7.3 MAT", b"", "a file of MATLAB", MATLAB),
-    (b"\x89MCAP", b"", "an MCAP file", CSV),
-    (
-        b"TDSm",
-        b"",
-        "a TDMS file of LabVIEW",
-        "write it as CSV or LVM",
-    ),
+    (b"PAR1", "a Parquet file", CSV),
+    (b"ARROW1", "a Feather file", CSV),
+    (b"\x89HDF", "an HDF5 file", CSV),
+    (b"MATLAB 5.0 MAT", "a file of MATLAB", MATLAB),
+    (b"MATLAB 7.3 MAT", "a file of MATLAB", MATLAB),
+    (b"\x89MCAP", "an MCAP file", CSV),
+    (b"TDSm", "a TDMS file of LabVIEW", "write it as CSV or LVM"),
     (
         b"<SALEAE>",
-        b"",
         "a binary export of Logic 2",
         "export the lines as CSV",
     ),
-    (b"#ROSBAG", b"", "a bag of ROS 1", "write a topic as CSV"),
+    (b"#ROSBAG", "a bag of ROS 1", "write a topic as CSV"),
     (
         b"SQLite format 3",
-        b"",
         "an SQLite database, as a bag of ROS 2",
         "write a topic as CSV",
     ),
-    (
-        b"ULog",
-        b"",
-        "a ULog of PX4",
-        "write it as CSV with ulog2csv",
-    ),
-    (b"MDF     ", b"", "an MDF file", CSV),
-    (b"LOGG", b"", "a BLF file of Vector", CSV),
+    (b"ULog", "a ULog of PX4", "write it as CSV with ulog2csv"),
+    (b"MDF     ", "an MDF file", CSV),
+    (b"LOGG", "a BLF file of Vector", CSV),
 ];
 
 const ZIP: &[u8] = b"PK\x03\x04";
+
+/// Bytes within a zip file that another program wrote, what it is, and the remedy.
+const ZIPPED: [(&[u8], &str, &str); 3] = [
+    (b"xl/", "a workbook of Excel", SHEET),
+    (b"opendocument.spreadsheet", "a spreadsheet", SHEET),
+    (b".npy", "a file of NumPy", NUMPY),
+];
+
 const CSV: &str = "write it as CSV";
 const SHEET: &str = "save the sheet as CSV";
 const NUMPY: &str =
@@ -78,11 +69,12 @@ const CONTROL_PART: usize = 20;
 /// [`Failure::Input`] with the remedy.
 pub(crate) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
     let refused = |what: &str| Err(Failure::Input(format!("{name}: line 1: {what}")));
-    let is_kind = |(begin, inside, ..): &&(&[u8], &[u8], &str, &str)| {
-        let contains = || head.windows(inside.len()).any(|part| part == *inside);
-        head.starts_with(begin) && (inside.is_empty() || contains())
-    };
-    if let Some((_, _, what, remedy)) = KINDS.iter().find(is_kind) {
+    let contains = |bytes: &[u8]| head.windows(bytes.len()).any(|part| part == bytes);
+    let mut zipped = ZIPPED.iter().filter(|_| head.starts_with(ZIP));
+    let kind = zipped
+        .find(|(inside, ..)| contains(inside))
+        .or_else(|| KINDS.iter().find(|(begin, ..)| head.starts_with(begin)));
+    if let Some((_, what, remedy)) = kind {
         return refused(&format!("this is {what}; {remedy}, or give the text as -"));
     }
     let head = &head[..head.len().min(SEARCHED)];
