@@ -6,6 +6,7 @@ use terminal::failure::Failure;
 use super::clock::Gaps;
 use super::currents::{Current, measured_note};
 use super::encoder::Encoder;
+use super::fields::is_without_value;
 use super::layout::{Layout, Place, Places};
 use super::lines::LineNumbers;
 use super::named_fields::Mark;
@@ -47,8 +48,9 @@ pub(super) struct Columns<'a> {
     edges: Vec<Option<EdgeStamp>>,
     stamps: Stamps,
     true_omega: Vec<f64>,
-    /// Number of rows left out.
+    /// Number of rows left out, and line of the first.
     left_out: usize,
+    first_left_out: u64,
     /// Line of the last row, if it may be cut.
     cut: Option<u64>,
 }
@@ -76,6 +78,7 @@ impl<'a> Columns<'a> {
             stamps: Stamps::default(),
             true_omega: Vec::new(),
             left_out: 0,
+            first_left_out: 0,
             cut: None,
         }
     }
@@ -99,6 +102,9 @@ impl<'a> Columns<'a> {
             return Ok(());
         }
         if self.is_of_others(row)? {
+            if self.left_out == 0 {
+                self.first_left_out = row.line;
+            }
             self.left_out += 1;
             return Ok(());
         }
@@ -164,7 +170,8 @@ impl<'a> Columns<'a> {
         };
         let has = |place: Place| -> Result<bool, Failure> {
             let is_new = row.marks.get(place.place) != Some(&Mark::Held);
-            Ok(is_new && !row.text(place.column.name(), place.place)?.is_empty())
+            let text = row.text(place.column.name(), place.place)?;
+            Ok(is_new && !is_without_value(text))
         };
         let others = || row.has_value(|place| ![time.place, position.place].contains(&place));
         Ok(!has(position)? && has(time)? && others())
@@ -346,8 +353,8 @@ impl<'a> Columns<'a> {
         notes.extend(repeated);
         if self.left_out > 0 {
             notes.push(format!(
-                "{} rows without a position are left out",
-                self.left_out
+                "{} rows without a position are left out, the first in line {}",
+                self.left_out, self.first_left_out
             ));
         }
         if let Some(line) = self.cut {

@@ -5,6 +5,14 @@ use super::options::Column;
 /// Characters of a field that a message shows.
 const SHOWN: usize = 40;
 
+/// What stands for no value, in any case.
+const NO_VALUE: [&str; 6] = ["", "nan", "null", "none", "na", "n/a"];
+
+/// Whether a field has no value: it is empty, or says so.
+pub(super) fn is_without_value(text: &str) -> bool {
+    NO_VALUE.iter().any(|word| text.eq_ignore_ascii_case(word))
+}
+
 /// The error for `text` in `column`, which the log calls `theirs`. `is_first` is true for the row below
 /// the header.
 pub(super) fn not_a_number(text: &str, [column, theirs]: [&str; 2], is_first: bool) -> String {
@@ -23,12 +31,12 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
         .contains(&column);
     match lower.trim_start_matches(['+', '-']) {
         "" => "remove the row, or fill the field".to_owned(),
-        "nan" | "null" | "none" | "na" | "n/a" | "inf" | "infinity" if is_needed => {
-            "remove the rows without a value".to_owned()
-        }
-        "nan" | "null" | "none" | "na" | "n/a" | "inf" | "infinity" => format!(
-            "remove the rows without a value, or rename the column {column}, which is optional"
-        ),
+        word if is_without_value(word) || ["inf", "infinity"].contains(&word) => match is_needed {
+            true => "remove the rows without a value".to_owned(),
+            false => format!(
+                "remove the rows without a value, or rename the column {column}, which is optional"
+            ),
+        },
         hex if hex.starts_with("0x") => "it is hexadecimal: write it in decimal".to_owned(),
         list if list.starts_with(['[', '{']) => {
             "write one JSON object a line, with one number a field".to_owned()

@@ -299,7 +299,7 @@ mod tests {
         let recording = read(&text, options).unwrap();
         assert_eq!(recording.trace.counts_large[..3], [8, 16, 24]);
         assert_eq!(recording.trace.current.unwrap()[..3], [7.0, 1.5, 2.5]);
-        let said = "17 rows without a position are left out";
+        let said = "17 rows without a position are left out, the first in line 2";
         assert!(
             recording.notes.iter().any(|note| note == said),
             "{:?}",

@@ -4,7 +4,7 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use super::fields::not_a_number;
+use super::fields::{is_without_value, not_a_number};
 use super::named_fields::Mark;
 use super::numbers::shown;
 
@@ -53,9 +53,11 @@ impl Row<'_> {
 
     /// Whether a column with a place that `is_meant` has a value.
     pub(super) fn has_value(&self, is_meant: impl Fn(usize) -> bool) -> bool {
-        let fields = self.record.iter().enumerate();
-        let mut fields = fields.filter(|(place, _)| is_meant(*place));
-        fields.any(|(_, field)| !field.trim_ascii().is_empty())
+        let is_value = |field: &[u8]| {
+            !std::str::from_utf8(field).is_ok_and(|text| is_without_value(text.trim()))
+        };
+        let mut fields = self.record.iter().enumerate();
+        fields.any(|(place, field)| is_meant(place) && is_value(field))
     }
 
     pub(super) fn number(&self, column: &str, place: usize) -> Result<f64, Failure> {

@@ -49,6 +49,10 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("serial-plotter.txt", ""),
     ("plotjuggler.csv", ""),
     ("labview.lvm", ""),
+    (
+        "several-axes.csv",
+        "--column|t=time:s,counts_large=axis 0 position:rev",
+    ),
 ];
 
 #[test]

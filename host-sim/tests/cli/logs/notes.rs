@@ -57,7 +57,12 @@ fn columns_and_units_that_were_converted_are_reported() {
         (
             "plotjuggler.csv",
             "",
-            "10 rows without a position are left out",
+            "10 rows without a position are left out, the first in line 6",
+        ),
+        (
+            "several-axes.csv",
+            "--column|t=time:s,counts_large=axis 0 position:rev",
+            "80 rows without a position are left out, the first in line 2",
         ),
         (
             "missing-rows.csv",

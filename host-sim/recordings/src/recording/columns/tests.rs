@@ -35,23 +35,35 @@ fn number_that_may_be_cut_is_left_out() {
 
 #[test]
 fn rows_of_other_signals_are_left_out() {
-    let row = |k: usize| format!("0.{k},{},\n0.{k}5,,9.81\n", 8 * k);
-    let rows = (0..9).map(row).collect::<String>();
-    for (header, columns) in [
-        ("s,encoder,imu", "t=s,counts_large=encoder:counts"),
-        ("t,counts_large,imu", ""),
-    ] {
-        let recording = read(&format!("{header}\n{rows}"), columns).unwrap();
-        assert_eq!(recording.trace.counts_large[..3], [0, 8, 16]);
-        assert_eq!(recording.t.len(), 9);
-        let said = "9 rows without a position are left out";
-        assert!(recording.notes.iter().any(|note| note == said));
+    let rows = |none: &str| {
+        let row = |k: usize| format!("0.{k},{},\n0.{k}5,{none},9.81\n", 8 * k);
+        (0..9).map(row).collect::<String>()
+    };
+    for none in ["", "NaN", "null", "None", "N/A"] {
+        for (header, columns) in [
+            ("s,encoder,imu", "t=s,counts_large=encoder:counts"),
+            ("t,counts_large,imu", ""),
+        ] {
+            let recording = read(&format!("{header}\n{}", rows(none)), columns).unwrap();
+            assert_eq!(recording.trace.counts_large[..3], [0, 8, 16]);
+            assert_eq!(recording.t.len(), 9);
+            let said = "9 rows without a position are left out, the first in line 3";
+            assert!(recording.notes.iter().any(|note| note == said));
+        }
     }
+    // A number that is not finite is a value.
+    let error = read(&format!("t,counts_large,imu\n{}", rows("inf")), "").unwrap_err();
+    assert!(
+        error.contains("line 3: column counts_large: 'inf' is not a number"),
+        "{error}"
+    );
+    let rows = rows("");
     // Nothing but the time: the row was cut. No time: it is of no instant.
     for (row, column) in [
         ("9,,", "counts_large"),
         ("9,, ", "counts_large"),
         (",,1", "t"),
+        ("9,,NaN", "counts_large"),
     ] {
         let error = read(&format!("t,counts_large,imu\n{rows}{row}\n"), "").unwrap_err();
         let said = format!("line 20: column {column}: '' is not a number; remove the row");
