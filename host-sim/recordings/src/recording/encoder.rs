@@ -33,6 +33,8 @@ pub(super) struct Encoder {
     origin: Option<f64>,
     /// Largest distance of a position from a whole number of counts behind the first one.
     rounded: f64,
+    /// Counts from the largest position to the next number of 32 bits.
+    float_step: f64,
     /// The latest position, counts with a fraction, and the changes of the positions.
     exact: Option<f64>,
     grid: Grid,
@@ -59,7 +61,8 @@ impl Encoder {
             Scale::PerRev(per_rev) => {
                 self.is_counts = false;
                 let position = row.number(column, at.place)?;
-                let exact = position * f64::from(options.counts_per_rev[motor]) / per_rev;
+                let counts_per_unit = f64::from(options.counts_per_rev[motor]) / per_rev;
+                let exact = position * counts_per_unit;
                 if exact.abs() > 9e15 {
                     let position = shown(position);
                     return Err(row.failure(
@@ -70,6 +73,8 @@ impl Encoder {
                 let origin = *self.origin.get_or_insert(exact - (exact + 0.5).floor());
                 let whole = (exact - origin + 0.5).floor();
                 self.rounded = self.rounded.max((exact - origin - whole).abs());
+                let float_step = f64::from(float_step(position as f32)) * counts_per_unit;
+                self.float_step = self.float_step.max(float_step);
                 (whole as i64, exact)
             }
             _ => {
@@ -147,7 +152,9 @@ impl Encoder {
             ),
             (None, false) => return None,
         };
-        let own = step.map(|step| (f64::from(counts_per_rev) / step).round());
+        // A step that 32 bits do not resolve is theirs.
+        let own = step.filter(|step| *step > self.float_step);
+        let own = own.map(|step| (f64::from(counts_per_rev) / step).round());
         Some(match own {
             Some(own) if own >= 2.0 => format!(
                 "{off}; they are multiples of 1/{own} revolution: if these are the encoder's counts, give {own} \
@@ -156,6 +163,11 @@ impl Encoder {
             _ => format!("{off}; if the encoder has more counts, give them {given}"),
         })
     }
+}
+
+/// Distance of a number of 32 bits from the next larger one.
+fn float_step(number: f32) -> f32 {
+    number.abs().next_up() - number.abs()
 }
 
 #[cfg(test)]
@@ -278,6 +290,13 @@ mod tests {
             ),
             "{notes:?}"
         );
+        // At 42 revolutions numbers of 32 bits are multiples of 2^-18, as in logs of ODrive; at 0.1 they are finer.
+        for (begin, is_of_floats) in [(42.0, true), (0.1, false)] {
+            let noisy = |turns: f64| (begin + turns.rem_euclid(50.0) / 262_144.0).to_string();
+            let notes = swing(1.0, noisy, "counts_large=counts_large:rev");
+            let own = "they are multiples of 1/262144 revolution: if";
+            assert_eq!(!notes[0].contains(own), is_of_floats, "{notes:?}");
+        }
         // Whole turns are no steps of an encoder.
         let turns = swing(
             1.0,
