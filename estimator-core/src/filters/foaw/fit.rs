@@ -6,7 +6,7 @@ use super::best_fit;
 use super::cone::Cone;
 use super::recent::{Recent, Steps, Stretches};
 use crate::sealed::Sealed;
-use crate::units::{Count, Counts};
+use crate::units::Count;
 
 /// Line fitted to a window: [`EndFit`] or [`BestFit`].
 ///
@@ -92,11 +92,6 @@ impl Fit for EndFit {
 fn end_fit(older: &[Count], stretches: &[u8], straight: Straight, d: i32) -> Window {
     let newest = straight.newest;
     let n = older.len();
-    // Counts since the sample this many ticks ago. Always inside.
-    let since = |ticks: usize| {
-        let count = older.get(ticks.wrapping_sub(1));
-        (newest - *count.unwrap_or(&newest)).0
-    };
     let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
     // Only samples at which the step changes are tested. Between two of them samples lie on a line, along
     // which the slope of the window and the limits of a sample are monotone.
@@ -111,12 +106,19 @@ fn end_fit(older: &[Count], stretches: &[u8], straight: Straight, d: i32) -> Win
             break;
         }
     }
-    let step = since(bend) - since(bend - 1);
-    let outside = cone.outside(since(bend), bend as i32, step);
-    let intervals = bend as u8 - outside as u8;
+    // One interval is always accepted.
+    let outside = match older.get(bend.wrapping_sub(2)..bend) {
+        Some(&[newer, oldest]) => {
+            cone.outside((newest - oldest).0, bend as i32, (newer - oldest).0)
+        }
+        _ => 0,
+    };
+    let intervals = bend - outside as usize;
+    // Always inside.
+    let oldest = older.get(intervals.wrapping_sub(1)).unwrap_or(&newest);
     Window {
-        intervals,
-        slope: Counts(since(usize::from(intervals))).to_f32() / f32::from(intervals),
+        intervals: intervals as u8,
+        slope: (newest - *oldest).to_f32() / intervals as f32,
     }
 }
 
