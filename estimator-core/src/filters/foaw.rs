@@ -42,7 +42,7 @@ use recent::Recent;
 /// 2 N more. The newest steps that are equal form one straight line, which needs no test: at rest and at a
 /// whole number of counts/tick an update takes few instructions. Of the other samples the end-fit tests
 /// those at which the step changes, once, and the best-fit tests all, once. With n and d = 1 known at compile
-/// time an update takes at most 107 + 21 n instructions of a Cortex-M4F for the end-fit and 136 + 38 n for
+/// time an update takes at most 108 + 21 n instructions of a Cortex-M4F for the end-fit and 136 + 38 n for
 /// the best-fit, 181 + 66 n where its products need 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
 ///
 /// ```
