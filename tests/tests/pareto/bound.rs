@@ -139,8 +139,8 @@ fn as_told_of_windows(rows: &[Row]) {
     let theory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/theory/foaw.md");
     let theory = std::fs::read_to_string(theory).unwrap();
     for (name, n, [a, b]) in [
-        ("foaw-end-fit, n = 15", 15, [108, 21]),
-        ("foaw-end-fit, n = 64", 64, [108, 21]),
+        ("foaw-end-fit, n = 15", 15, [76, 19]),
+        ("foaw-end-fit, n = 64", 64, [76, 19]),
         // Up to 17 intervals 32 bits hold every product.
         ("foaw-best-fit, n = 15", 15, [136, 38]),
         ("foaw-best-fit, n = 64", 64, [181, 66]),
