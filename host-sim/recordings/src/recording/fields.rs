@@ -6,7 +6,7 @@ use super::options::Column;
 const SHOWN: usize = 40;
 
 /// What stands for no value, in any case.
-const NO_VALUE: [&str; 6] = ["", "nan", "null", "none", "na", "n/a"];
+const NO_VALUE: [&str; 7] = ["", "nan", "-nan", "null", "none", "na", "n/a"];
 
 /// Whether a field has no value: it is empty, or says so.
 pub(super) fn is_without_value(text: &str) -> bool {

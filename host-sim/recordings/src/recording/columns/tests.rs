@@ -39,7 +39,7 @@ fn rows_of_other_signals_are_left_out() {
         let row = |k: usize| format!("0.{k},{},\n0.{k}5,{none},9.81\n", 8 * k);
         (0..9).map(row).collect::<String>()
     };
-    for none in ["", "NaN", "null", "None", "N/A"] {
+    for none in ["", "NaN", "-nan", "null", "None", "N/A"] {
         for (header, columns) in [
             ("s,encoder,imu", "t=s,counts_large=encoder:counts"),
             ("t,counts_large,imu", ""),
