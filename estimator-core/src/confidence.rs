@@ -79,7 +79,7 @@ impl Confidence for FiniteDifference {
 }
 
 impl<const N: usize, F: Fit> Confidence for Foaw<N, F> {
-    fn variance(&self, state: &FoawState<N>) -> Variance {
+    fn variance(&self, state: &FoawState<N, F>) -> Variance {
         let window = state.window().max(1) as f32;
         Variance(1.0 / (window * window))
     }

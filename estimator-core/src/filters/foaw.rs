@@ -13,7 +13,6 @@ use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::CountsPerTick;
 
-use fit::Straight;
 pub use fit::{BestFit, EndFit, Fit};
 use recent::Recent;
 
@@ -39,12 +38,13 @@ use recent::Recent;
 /// window, 1 to 128 intervals; n may be less at run time. Steps of 2^15 counts/tick or more restart
 /// the window.
 ///
-/// The ring of samples is stored twice, so that a window is contiguous: 8 N bytes. The newest steps
-/// that are equal form one straight line, which needs no test: at rest and at a whole number of
-/// counts/tick an update takes few instructions. Every other sample of the window is tested once.
-/// With n and d = 1 known at compile time an update takes at most 76 + 19 n instructions of a
-/// Cortex-M4F for the end-fit and 136 + 38 n for the best-fit, 181 + 66 n where its products need
-/// 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
+/// The ring of samples is stored twice, so that a window is contiguous: 8 N bytes, and with the end-fit
+/// 2 N more. The newest steps that are equal form one straight line, which needs no test: at rest and at
+/// a whole number of counts/tick an update takes few instructions. Every other sample of the window is
+/// tested once; with N above 16 the end-fit tests only those at which the step changes, which decide.
+/// With n and d = 1 known at compile time an update takes at most 76 + 19 n instructions of a Cortex-M4F
+/// for the end-fit, 108 + 21 n with N above 16, and 136 + 38 n for the best-fit, 181 + 66 n where its
+/// products need 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
 ///
 /// ```
 /// use estimator_core::{BestFit, Count, Foaw, Sample, VelocityEstimator, preset};
@@ -93,12 +93,12 @@ impl<const N: usize, F: Fit> Foaw<N, F> {
 
 /// State of a [`Foaw`]: the newest counts and the window length last used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FoawState<const N: usize> {
-    recent: Recent<N>,
+pub struct FoawState<const N: usize, F: Fit> {
+    recent: Recent<N, F::Steps<N>>,
     window: u8,
 }
 
-impl<const N: usize> FoawState<N> {
+impl<const N: usize, F: Fit> FoawState<N, F> {
     /// Window length of the last update in intervals; 0 before the first.
     #[must_use]
     pub const fn window(&self) -> usize {
@@ -123,24 +123,19 @@ macro_rules! update {
             return CountsPerTick(step.to_f32());
         }
         recent.push($sample.count, $self.window);
-        let straight = Straight {
-            newest: $sample.count,
-            intervals: recent.equal_steps(),
-            step: step.0,
-        };
-        let older = recent.older(usize::from($self.window));
         let fits_i32 = step.0.abs() <= $self.longest_i32;
-        let window = F::longest::<$memory>(older, straight, fits_i32, $self.bound);
+        let n = usize::from($self.window);
+        let window = F::longest::<N, $memory>(recent, n, fits_i32, $self.bound);
         $state.window = window.intervals;
         CountsPerTick(window.slope)
     }};
 }
 
 impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
-    type State = FoawState<N>;
+    type State = FoawState<N, F>;
     const NEEDS: Signals = Signals::COUNT;
 
-    fn start(&self, first: &Sample) -> FoawState<N> {
+    fn start(&self, first: &Sample) -> FoawState<N, F> {
         FoawState {
             recent: Recent::new(first.count),
             window: 0,
@@ -151,12 +146,12 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
     // at run time. `inline(always)` here and a call to the search that both uses share would be faster there,
     // but a single use, the usual one, would take more instructions, with the best-fit up to 28 in the mean.
     #[inline]
-    fn update(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
+    fn update(&self, state: &mut FoawState<N, F>, sample: &Sample) -> CountsPerTick {
         update!(self, state, sample, false)
     }
 
     #[inline]
-    fn update_of_memory(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
+    fn update_of_memory(&self, state: &mut FoawState<N, F>, sample: &Sample) -> CountsPerTick {
         update!(self, state, sample, true)
     }
 }

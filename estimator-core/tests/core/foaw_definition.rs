@@ -104,7 +104,7 @@ fn compare_after<const N: usize, D: Definition>(
 ) {
     let foaw = Foaw::<N, D>::new(n, d).expect("valid");
     let at = |position: i64| Sample::new(Count((position as u32).wrapping_add(0xFFFF_FF00)));
-    let mut state: FoawState<N> = foaw.start(&at(positions[0] - restart.unwrap_or(0)));
+    let mut state: FoawState<N, D> = foaw.start(&at(positions[0] - restart.unwrap_or(0)));
     if restart.is_some() {
         foaw.update(&mut state, &at(positions[0]));
     }
@@ -128,6 +128,23 @@ fn compare_after<const N: usize, D: Definition>(
     }
 }
 
+/// Steps that stay equal for up to 40 ticks.
+struct Stretch {
+    step: i64,
+    left: u64,
+}
+
+impl Stretch {
+    fn step(&mut self, draws: &mut Draws) -> i64 {
+        if self.left == 0 {
+            self.left = 1 + draws.bits() % 40;
+            self.step = draws.within(3);
+        }
+        self.left -= 1;
+        self.step
+    }
+}
+
 /// Positions of one kind, `ticks` long.
 fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
     let mut y = vec![0i64];
@@ -137,6 +154,7 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
     let interval = 2 + draws.bits() % 60;
     let draw = draws.unit().abs();
     let step = draws.within(40);
+    let mut stretch = Stretch { step: 0, left: 0 };
     for tick in 1..=ticks {
         let t = tick as f64;
         let last = y[tick - 1];
@@ -157,6 +175,8 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
             8 => last + if tick / 20 % 2 == 0 { 32_767 } else { -32_767 },
             // Speeds of every size, for products on both sides of 32 bits.
             9 => (speed.signum() * 2f64.powf(14.9 * draw) * t).floor() as i64 + draws.within(1),
+            // Stretches of equal steps, of any length.
+            10 => last + stretch.step(draws),
             // Fast with noise.
             _ => (speed * 0.9 * t).floor() as i64 + draws.within(3),
         });
@@ -164,7 +184,7 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
     y
 }
 
-const KINDS: usize = 11;
+const KINDS: usize = 12;
 
 /// All kinds of motion at this window and band, both fits.
 fn all_kinds<const N: usize>(n: usize, bands: &[u16], ticks: usize, seed: u64) -> Tally {
@@ -190,6 +210,10 @@ fn windows_and_velocities_are_those_of_the_definition() {
             let mut updates = 0;
             for n in 1..=15 {
                 updates += all_kinds::<15>(n, &[0, 1, 2, 3, 7], 200, n as u64).updates;
+            }
+            // The smallest ring whose search goes by stretches.
+            for n in 1..=17 {
+                updates += all_kinds::<17>(n, &[0, 1, 3], 200, n as u64).updates;
             }
             updates + all_kinds::<16>(16, &[1, 16_384], 800, 99).updates
         });

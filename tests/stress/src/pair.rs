@@ -52,7 +52,7 @@ pub(crate) trait General {
 
 impl<E, S> General for Of<'_, E, S> {}
 
-impl<E, const N: usize> Of<'_, E, core::FoawState<N>> {
+impl<E, const N: usize, F: core::Fit> Of<'_, E, core::FoawState<N, F>> {
     pub(crate) fn window(&self) -> Option<usize> {
         Some(self.1.window())
     }

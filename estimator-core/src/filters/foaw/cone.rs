@@ -31,8 +31,8 @@ impl Cone {
     }
 
     /// Keeps the slopes that also pass the sample `rise` counts and `run` ticks ago, and returns
-    /// whether the slope to that sample is in the cone. If it is not, the cone is invalid from then
-    /// on.
+    /// whether the slope to that sample is in the cone. If it is not, it is outside the same bound as
+    /// before, and the other bound is invalid.
     #[inline(always)]
     pub(super) const fn narrow_from_inside(&mut self, rise: i32, run: i32, d: i32) -> bool {
         let Self { lowest, highest } = self;
@@ -62,6 +62,28 @@ impl Cone {
             unlikely();
         }
         true
+    }
+
+    /// How many samples have a slope outside the cone: those of a stretch of equal steps whose oldest
+    /// one is `rise` counts and `run` ticks ago. The sample at its newer end is inside.
+    #[inline(always)]
+    pub(super) const fn outside(&self, rise: i32, run: i32, step: i32) -> u32 {
+        let Self { lowest, highest } = self;
+        let above = rise * lowest.run - lowest.rise * run;
+        let below = highest.rise * run - rise * highest.run;
+        // The margin of the oldest, and what each newer one has more.
+        let (margin, more) = if above < 0 {
+            (above, lowest.rise - step * lowest.run)
+        } else if below < 0 {
+            (below, step * highest.run - highest.rise)
+        } else {
+            return 0;
+        };
+        // ⌈-margin / more⌉
+        match (!margin as u32).checked_div(more as u32) {
+            Some(whole) => whole + 1,
+            None => 1,
+        }
     }
 
     /// Keeps the slopes that also pass the sample `rise` counts and `run` ticks ago, and returns

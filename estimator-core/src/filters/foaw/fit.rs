@@ -1,24 +1,30 @@
 //! The two lines that are fitted to a window.
 
+use core::fmt::Debug;
+
 use super::best_fit;
 use super::cone::Cone;
+use super::recent::{Recent, Steps, Stretches};
 use crate::sealed::Sealed;
 use crate::units::Count;
 
 /// Line fitted to a window: [`EndFit`] or [`BestFit`].
 ///
 /// This trait is sealed: only types of this crate implement it.
-pub trait Fit: Copy + Sealed {
-    /// The longest accepted window with noise bound `d`. `older` holds the samples before the newest
-    /// one, newest first. `fits_i32` says whether 32 bits hold the products of the least-squares line.
+pub trait Fit: Copy + Eq + Debug + Sealed {
+    #[doc(hidden)]
+    type Steps<const N: usize>: Steps;
+
+    /// The longest accepted window of at most `n` intervals with noise bound `d`. `fits_i32` says whether
+    /// 32 bits hold the products of the least-squares line.
     ///
     /// The search has more values than there are registers. A bound of 1, the usual one, is a constant
     /// there. Another bound that is in `MEMORY` has a function of its own where it would take registers
     /// from the usual one.
     #[doc(hidden)]
-    fn longest<const MEMORY: bool>(
-        older: &[Count],
-        straight: Straight,
+    fn longest<const N: usize, const MEMORY: bool>(
+        recent: &Recent<N, Self::Steps<N>>,
+        n: usize,
         fits_i32: bool,
         d: i32,
     ) -> Window;
@@ -39,7 +45,7 @@ impl Sealed for BestFit {}
 /// The newest steps that are equal. One line passes through all their samples, so they are an
 /// accepted window.
 #[derive(Clone, Copy, Debug)]
-pub struct Straight {
+pub(super) struct Straight {
     pub(super) newest: Count,
     pub(super) intervals: usize,
     pub(super) step: i32,
@@ -65,18 +71,43 @@ pub struct Window {
 }
 
 impl Fit for EndFit {
+    type Steps<const N: usize> = Stretches<N>;
+
     #[inline(always)]
-    fn longest<const MEMORY: bool>(older: &[Count], straight: Straight, _: bool, d: i32) -> Window {
+    fn longest<const N: usize, const MEMORY: bool>(
+        recent: &Recent<N, Stretches<N>>,
+        n: usize,
+        _: bool,
+        d: i32,
+    ) -> Window {
         match d {
-            1 => end_fit(older, straight, 1),
-            _ => end_fit(older, straight, d),
+            1 => end_fit(recent, n, 1),
+            _ => end_fit(recent, n, d),
         }
     }
 }
 
 #[inline(always)]
-fn end_fit(older: &[Count], straight: Straight, d: i32) -> Window {
-    let newest = straight.newest;
+fn end_fit<const N: usize>(recent: &Recent<N, Stretches<N>>, n: usize, d: i32) -> Window {
+    let (older, straight) = (recent.older(n), recent.straight());
+    let intervals = if Stretches::<N>::KEPT {
+        accepted_of_stretches(older, recent.stretches(n), straight, d)
+    } else {
+        accepted_of_samples(older, straight, d)
+    };
+    // Always inside.
+    let oldest = older
+        .get(usize::from(intervals).wrapping_sub(1))
+        .unwrap_or(&straight.newest);
+    Window {
+        intervals,
+        slope: (straight.newest - *oldest).to_f32() / f32::from(intervals),
+    }
+}
+
+/// Number of accepted intervals. Every sample is tested.
+#[inline(always)]
+fn accepted_of_samples(older: &[Count], straight: Straight, d: i32) -> u8 {
     let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
     // Number of samples tested, of which only the last may be rejected.
     let mut seen = straight.intervals;
@@ -85,28 +116,49 @@ fn end_fit(older: &[Count], straight: Straight, d: i32) -> Window {
         // Always inside.
         let Some(count) = older.get(seen) else { break };
         seen += 1;
-        accepted = cone.narrow_from_inside((newest - *count).0, seen as i32, d);
+        accepted = cone.narrow_from_inside((straight.newest - *count).0, seen as i32, d);
     }
-    let intervals = seen as u8 - u8::from(!accepted);
-    // Always inside.
-    let oldest = older
-        .get(usize::from(intervals).wrapping_sub(1))
-        .copied()
-        .unwrap_or(newest);
-    Window {
-        intervals,
-        slope: (newest - oldest).to_f32() / f32::from(intervals),
+    seen as u8 - u8::from(!accepted)
+}
+
+/// Number of accepted intervals. Of a stretch of equal steps only the oldest sample is tested: its samples lie on
+/// a line, along which the slope of the window and the limits of a sample are monotone.
+#[inline(always)]
+fn accepted_of_stretches(older: &[Count], stretches: &[u8], straight: Straight, d: i32) -> u8 {
+    let newest = straight.newest;
+    let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
+    let mut seen = straight.intervals;
+    while let Some(stretch) = stretches.get(seen - 1) {
+        seen += usize::from(*stretch);
+        let Some(count) = older.get(seen - 1) else {
+            seen = older.len();
+            break;
+        };
+        if !cone.narrow_from_inside((newest - *count).0, seen as i32, d) {
+            break;
+        }
     }
+    // One interval is always accepted.
+    let outside = match older.get(seen.wrapping_sub(2)..seen) {
+        Some(&[newer, oldest]) => {
+            cone.outside((newest - oldest).0, seen as i32, (newer - oldest).0)
+        }
+        _ => 0,
+    };
+    (seen - outside as usize) as u8
 }
 
 impl Fit for BestFit {
+    type Steps<const N: usize> = ();
+
     #[inline(always)]
-    fn longest<const MEMORY: bool>(
-        older: &[Count],
-        straight: Straight,
+    fn longest<const N: usize, const MEMORY: bool>(
+        recent: &Recent<N, ()>,
+        n: usize,
         fits_i32: bool,
         d: i32,
     ) -> Window {
+        let (older, straight) = (recent.older(n), recent.straight());
         match d {
             1 => best_fit(older, straight, fits_i32, 1),
             _ if MEMORY => best_fit_of_memory(older, straight, fits_i32, d),

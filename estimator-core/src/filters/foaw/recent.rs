@@ -1,32 +1,75 @@
 //! A ring of the newest counts.
 
+use core::fmt::Debug;
+
+use super::fit::Straight;
 use crate::units::{Count, Counts};
+
+/// What a fit keeps of each sample about the steps before it: [`Stretches`] or nothing, `()`.
+pub trait Steps: Copy + Debug + Eq {
+    #[doc(hidden)]
+    const NEW: Self;
+    /// Stores the number of equal steps before a sample.
+    #[doc(hidden)]
+    fn keep(&mut self, head: usize, equal: u8);
+}
+
+impl Steps for () {
+    const NEW: Self = ();
+    #[inline(always)]
+    fn keep(&mut self, _: usize, _: u8) {}
+}
+
+/// For each of N samples the number of equal steps before it, at least 1, at most the window; stored
+/// twice, as the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretches<const N: usize>([[u8; N]; 2]);
+
+impl<const N: usize> Stretches<N> {
+    /// In a window of few intervals too few samples are skipped: what the stretches take where every step
+    /// differs from the one before weighs more.
+    pub(super) const KEPT: bool = N > 16;
+}
+
+impl<const N: usize> Steps for Stretches<N> {
+    const NEW: Self = Self([[1; N]; 2]);
+    #[inline(always)]
+    fn keep(&mut self, head: usize, equal: u8) {
+        if Self::KEPT {
+            let [once, twice] = &mut self.0;
+            once[head] = equal;
+            twice[head] = equal;
+        }
+    }
+}
 
 /// The newest N + 1 samples.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Recent<const N: usize> {
+pub struct Recent<const N: usize, S> {
     pub(super) newest: Count,
-    /// The newest step, and the number of newest steps equal to it, at most the window; 0 before the
-    /// first.
+    /// The newest step; [out of reach](Self::OUT_OF_REACH) before the first.
     step: Counts,
+    /// Number of newest steps that are equal, at most the window; 1 before the first.
     equal: u32,
     /// Below N.
     head: u32,
     /// The samples before the newest, newest first from `head` on, stored twice so that they are
     /// contiguous. A sentinel [out of reach](Self::OUT_OF_REACH) precedes the first sample.
     older: [[Count; N]; 2],
+    /// What `equal` was when each of them was the newest.
+    steps: S,
 }
 
 /// Two rings are equal if they hold the same samples since the first, at whatever index.
-impl<const N: usize> PartialEq for Recent<N> {
+impl<const N: usize, S: Steps> PartialEq for Recent<N, S> {
     fn eq(&self, other: &Self) -> bool {
         self.newest == other.newest && self.since_first().eq(other.since_first())
     }
 }
 
-impl<const N: usize> Eq for Recent<N> {}
+impl<const N: usize, S: Steps> Eq for Recent<N, S> {}
 
-impl<const N: usize> Recent<N> {
+impl<const N: usize, S: Steps> Recent<N, S> {
     /// Displacement from the first sample to the sentinel before it. The sentinel is outside every
     /// noise band, so no window extends past the first sample.
     ///
@@ -38,10 +81,11 @@ impl<const N: usize> Recent<N> {
     pub(super) fn new(first: Count) -> Self {
         Self {
             newest: first,
-            step: Counts(0),
-            equal: 0,
+            step: Self::OUT_OF_REACH,
+            equal: 1,
             head: 0,
             older: [[first + Self::OUT_OF_REACH; N]; 2],
+            steps: S::NEW,
         }
     }
 
@@ -49,7 +93,8 @@ impl<const N: usize> Recent<N> {
     pub(super) fn restart(&mut self, first: Count) {
         self.keep(first + Self::OUT_OF_REACH);
         self.newest = first;
-        self.equal = 0;
+        self.step = Self::OUT_OF_REACH;
+        self.equal = 1;
     }
 
     /// The samples before the newest, back to the first. No step between two of them is as long as
@@ -69,19 +114,24 @@ impl<const N: usize> Recent<N> {
         self.step.0 == 0 && self.equal == n as u32
     }
 
-    /// Number of newest steps that are equal, at most the window.
-    pub(super) const fn equal_steps(&self) -> usize {
-        self.equal as usize
+    /// The newest steps that are equal.
+    #[inline(always)]
+    pub(super) const fn straight(&self) -> Straight {
+        Straight {
+            newest: self.newest,
+            intervals: self.equal as usize,
+            step: self.step.0,
+        }
     }
 
     /// Adds a sample to a window of n intervals, at least 1.
     #[inline(always)]
     pub(super) fn push(&mut self, count: Count, n: u8) {
         let step = count - self.newest;
+        self.keep(self.newest);
         let equal = if step == self.step { self.equal } else { 0 };
         self.equal = equal.min(u32::from(n) - 1) + 1;
         self.step = step;
-        self.keep(self.newest);
         self.newest = count;
     }
 
@@ -93,15 +143,33 @@ impl<const N: usize> Recent<N> {
         let [once, twice] = &mut self.older;
         once[head] = count;
         twice[head] = count;
+        self.steps.keep(head, self.equal as u8);
         self.head = head as u32;
     }
 
     /// The samples before the newest, newest first, at most `most` of them.
     #[inline(always)]
     pub(super) fn older(&self, most: usize) -> &[Count] {
-        let head = self.head as usize;
-        // Always inside.
-        let older = self.older.as_flattened().get(head..head + most.min(N));
-        older.unwrap_or(&[])
+        window(self.older.as_flattened(), self.head, most.min(N))
     }
+}
+
+impl<const N: usize> Recent<N, Stretches<N>> {
+    /// For each sample before the newest the number of equal steps before it, newest first; nothing where
+    /// they are not [kept](Stretches::KEPT).
+    #[inline(always)]
+    pub(super) fn stretches(&self, most: usize) -> &[u8] {
+        if Stretches::<N>::KEPT {
+            window(self.steps.0.as_flattened(), self.head, most.min(N))
+        } else {
+            &[]
+        }
+    }
+}
+
+#[inline(always)]
+fn window<T>(twice: &[T], head: u32, length: usize) -> &[T] {
+    let head = head as usize;
+    // Always inside.
+    twice.get(head..head + length).unwrap_or(&[])
 }
