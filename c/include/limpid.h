@@ -270,7 +270,7 @@ typedef struct {
  State of `foaw-end-fit`, which the caller owns; valid after `limpid_foaw_end_fit_15_start`.
  */
 typedef struct {
-  uint32_t words[35];
+  uint32_t words[43];
 } limpid_foaw_end_fit_15_state_t;
 
 /*
@@ -284,7 +284,7 @@ typedef struct {
  State of `foaw-end-fit`, which the caller owns; valid after `limpid_foaw_end_fit_64_start`.
  */
 typedef struct {
-  uint32_t words[133];
+  uint32_t words[165];
 } limpid_foaw_end_fit_64_state_t;
 
 /*
