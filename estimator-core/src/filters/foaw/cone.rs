@@ -79,7 +79,7 @@ impl Cone {
         } else {
             return 0;
         };
-        // ⌈-margin / more⌉
+        // ⌈-margin / more⌉; `more` is never 0, because the newer sample is inside.
         match (!margin as u32).checked_div(more as u32) {
             Some(whole) => whole + 1,
             None => 1,
