@@ -102,7 +102,7 @@ fn bad_count_is_named_with_its_time() {
         "bad.csv",
         swing_of(9000).lines().map(bad).collect::<String>(),
     );
-    let said = "counts_large jumps at t = 1.234 s, which is no motion of a shaft";
+    let said = "counts_large is bad at t = 1.234 s: delete these rows; all scores contain what is no motion of a shaft";
     let tune = ["tune", "--estimator", "low-pass", "--out", "tuned.toml"];
     for command in [&["recommend"][..], &["replay", "--out", "v.csv"], &tune] {
         for (log, names_it) in [("bad.csv", true), ("swing.csv", false)] {

@@ -47,23 +47,40 @@ impl Motion {
     }
 }
 
+/// Times that a message lists.
+const LISTED: usize = 8;
+
 /// One line on the rows of `recording` that are no motion of a shaft; `None` if there are none.
 ///
 /// Estimators do not know them: one such row can decide which of them has the smallest error.
 #[must_use]
 pub fn interruptions(recording: &Recording) -> Option<String> {
     let rows = rows(recording);
-    let interrupted = || (rows.iter().zip(&recording.t)).filter(|(row, _)| **row != Row::Next);
-    let t = shown(*interrupted().next()?.1);
-    let more = match interrupted().count() - 1 {
-        0 => String::new(),
-        1 => " and at one row more".to_owned(),
-        more => format!(" and at {more} rows more"),
-    };
-    Some(format!(
-        "counts_large jumps at t = {t} s{more}, which is no motion of a shaft: all scores contain the jump; \
-         delete rows with bad counts, and cut the log where the counter was set"
-    ))
+    let remedies = [
+        (Row::Bad, "is bad", "delete these rows"),
+        (Row::Jumped, "jumps", "cut the log there"),
+    ];
+    let said = remedies.iter().filter_map(|(kind, what, remedy)| {
+        let of_kind = rows
+            .iter()
+            .zip(&recording.t)
+            .filter(|(row, _)| *row == kind);
+        let times: Vec<_> = of_kind.map(|(_, t)| shown(*t)).collect();
+        let listed = times[..times.len().min(LISTED)].join(", ");
+        let more = match times.len().saturating_sub(LISTED) {
+            0 => String::new(),
+            1 => " and at 1 row more".to_owned(),
+            more => format!(" and at {more} rows more"),
+        };
+        (!times.is_empty()).then(|| format!("{what} at t = {listed} s{more}: {remedy}"))
+    });
+    let said: Vec<_> = said.collect();
+    (!said.is_empty()).then(|| {
+        format!(
+            "counts_large {}; all scores contain what is no motion of a shaft",
+            said.join(", and ")
+        )
+    })
 }
 
 /// What each row of `recording` says of the motion.
@@ -174,18 +191,43 @@ mod tests {
     }
 
     #[test]
-    fn interruptions_name_the_first_row() {
+    fn interruptions_are_named_with_their_times_and_remedies() {
         let mut counts = steady();
         assert_eq!(interruptions(&recording(&counts)), None);
-        for (k, said) in [
-            (40, "jumps at t = 0.04 s, which"),
-            (30, "jumps at t = 0.03 s and at one row more, which"),
-            (50, "jumps at t = 0.03 s and at 2 rows more, which"),
-        ] {
+        let scores = "all scores contain what is no motion of a shaft";
+        for (k, said) in [(40, "0.04"), (30, "0.03, 0.04"), (50, "0.03, 0.04, 0.05")] {
             counts[k] += 1 << 20;
-            let line = interruptions(&recording(&counts)).unwrap_or_default();
-            assert!(line.contains(said), "{line}");
+            let line = interruptions(&recording(&counts)).unwrap();
+            let said = format!("counts_large is bad at t = {said} s: delete these rows; {scores}");
+            assert_eq!(line, said);
         }
+        counts[60..].iter_mut().for_each(|count| *count += 1 << 20);
+        let line = interruptions(&recording(&counts)).unwrap();
+        let said = "0.05 s: delete these rows, and jumps at t = 0.06 s: cut the log there; all";
+        assert!(line.contains(said), "{line}");
+        let set = recording(
+            &counts[60..70]
+                .iter()
+                .chain(&counts[..30])
+                .copied()
+                .collect::<Vec<_>>(),
+        );
+        let said = format!("counts_large jumps at t = 0.01 s: cut the log there; {scores}");
+        assert_eq!(interruptions(&set), Some(said));
+    }
+
+    #[test]
+    fn many_interruptions_are_counted() {
+        let mut counts: Vec<_> = (0..300).map(|k| 3 * k).collect();
+        for k in 1..=9 {
+            counts[10 * k] += 1 << 20;
+        }
+        let line = interruptions(&recording(&counts)).unwrap();
+        let said = "t = 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08 s and at 1 row more: delete";
+        assert!(line.contains(said), "{line}");
+        counts[95] += 1 << 20;
+        let line = interruptions(&recording(&counts)).unwrap();
+        assert!(line.contains("0.08 s and at 2 rows more: delete"), "{line}");
     }
 
     #[test]

@@ -62,11 +62,14 @@ pub(super) fn unknown(mapping: &Mapping, layout: &Layout, name: &str) -> Failure
         ));
     }
     Failure::Input(format!(
-        "{name}: line {}: no column '{}', which --column names for {ours}; {}; write one of these \
-         names, or the number of the column",
+        "{name}: line {}: no column '{}', which --column names for {ours}; {}; write {}the number of the column",
         layout.line.max(1),
         short(theirs),
-        found(layout)
+        found(layout),
+        match layout.has_header() {
+            true => "one of these names, or ",
+            false => "",
+        }
     ))
 }
 
@@ -150,10 +153,13 @@ pub(super) fn short(name: &str) -> String {
 pub(super) fn found(layout: &Layout) -> String {
     let number = layout.names.len();
     if !layout.has_header() {
-        return format!(
-            "there are no names but {number} columns, separated by {}",
-            layout.separator.name()
-        );
+        let columns = format!("{number} columns, separated by {}", layout.separator.name());
+        return match layout.misfit {
+            None => format!("there are no names but {columns}"),
+            Some((line, names)) => {
+                format!("line {line} has {names} names, and the rows have {columns}")
+            }
+        };
     }
     let names: Vec<_> = layout.names.iter().map(|name| short(name)).collect();
     let all = names.join("; ");
@@ -210,6 +216,20 @@ mod tests {
                 "0,1\n0.1,2\n",
                 "no column t; there are no names but 2 columns, separated by ','; give the \
                  numbers of the columns, for example --column t=1:s,counts_large=2:counts",
+            ),
+            (
+                "time (s),pos,pwm:Kp=1,Kd=2\n0,1,5\n0.1,2,6\n",
+                "line 1: no column t; line 1 has 4 names, and the rows have 3 columns, separated by ','; \
+                 write one name for each column, or give the numbers of the columns, for example --column \
+                 t=1:s,counts_large=2:counts",
+            ),
+            (
+                "a log of time, of position\n0,1,5\n0.1,2,6\n",
+                "line 1 has 2 names, and the rows have 3 columns",
+            ),
+            (
+                "started at 12:00, by me\n0,1,5\n0.1,2,6\n",
+                "no column t; there are no names but 3 columns",
             ),
             // Some field of each row is a text.
             (
@@ -287,6 +307,33 @@ mod tests {
         let error = error("a,b\n1,2\n");
         for name in ["moteus", "ODrive", "VESC Tool", "SimpleFOC", "PlotJuggler"] {
             assert!(error.contains(name), "{name}: {error}");
+        }
+    }
+
+    #[test]
+    fn name_that_no_column_has_is_refused_with_what_can_be_written() {
+        let rows = "0,1\n0.1,2\n";
+        let none = "no column 'zeit', which --column names for t; ";
+        let names_or_number = "write one of these names, or the number of the column";
+        for (header, said) in [
+            (
+                "stamp,pos\n",
+                &[none, "found: stamp; pos, ", names_or_number][..],
+            ),
+            ("", &[none, "; write the number of the column"]),
+            (
+                "time,pos,x\n",
+                &[
+                    none,
+                    "line 1 has 3 names, ",
+                    "; write the number of the column",
+                ],
+            ),
+        ] {
+            let error = read_log(&format!("{header}{rows}"), "t=zeit").unwrap_err();
+            for said in said {
+                assert!(error.contains(said), "{header}: {error}");
+            }
         }
     }
 

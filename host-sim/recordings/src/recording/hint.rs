@@ -36,8 +36,13 @@ pub(super) fn option(layout: &Layout) -> String {
             .to_owned();
     }
     if !layout.has_header() {
-        return "give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
-            .to_owned();
+        let names = match layout.misfit {
+            Some(_) => "write one name for each column, or ",
+            None => "",
+        };
+        return format!(
+            "{names}give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
+        );
     }
     let parts = [
         guess(layout, Column::T, &times(), "TIME"),

@@ -35,6 +35,8 @@ pub(super) struct Layout {
     pub(super) units: Vec<String>,
     /// Line of the header; 0 where the text has no header.
     pub(super) line: u64,
+    /// A line with names that are more or fewer than the columns, and their number.
+    pub(super) misfit: Option<(u64, usize)>,
     /// Number of lines before the data.
     pub(super) skip: u64,
     /// What is searched of a text that goes on and has no header and no numbers there.
@@ -123,6 +125,7 @@ impl Layout {
             names,
             units: Vec::new(),
             line: index as u64 + 1,
+            misfit: None,
             skip: index as u64 + 1,
             searched: None,
             two_levels: Vec::new(),

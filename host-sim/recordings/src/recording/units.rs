@@ -86,7 +86,10 @@ const TIME: &[Unit] = &[
 ];
 
 const POSITION: &[Unit] = &[
-    unit(&["counts", "count", "ticks", "pulses"], Scale::Counts),
+    unit(
+        &["counts", "count", "cts", "ticks", "pulses", "steps", "qc"],
+        Scale::Counts,
+    ),
     unit(&["deg", "degree", "degrees", "°"], Scale::PerRev(360.0)),
     unit(&["rad", "radian", "radians"], Scale::PerRev(TAU)),
     unit(

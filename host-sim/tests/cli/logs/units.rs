@@ -28,6 +28,7 @@ fn every_column_that_is_named_is_reported_with_its_unit() {
         ("counts_large", "angle_mdeg", "mdeg with 4096 counts/rev"),
         ("counts_large", "theta/deg", "deg with 4096 counts/rev"),
         ("counts_large", "position", "counts"),
+        ("counts_large", "encoder(steps)", "counts"),
         ("true_omega", "omega_deg_s", "deg/s"),
         ("true_omega", "gyro_dps", "deg/s"),
         ("true_omega", "speed/rpm", "rpm"),

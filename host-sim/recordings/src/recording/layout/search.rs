@@ -7,6 +7,7 @@ use super::super::moment::Moment;
 use super::super::options::{Column, ReadOptions};
 use super::super::separator::{Separator, comment};
 use super::Layout;
+use super::stating::{POSITIONS, TIMES, has};
 
 /// The first line that names a time and a position, in text or in a comment.
 pub(super) fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
@@ -50,14 +51,20 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
             && let Some((separator, fields)) = numbers(line)
         {
             let named = fields - usize::from(end_with(separator, &lines[index..]));
-            let mut headers = above.into_iter().flatten().filter_map(|(above, text)| {
+            let headers = above.into_iter().flatten().filter_map(|(above, text)| {
                 let header = Layout::header(separator, separator.split(text), above);
-                let fits = [fields, named].contains(&header.names.len());
-                (fits && numbers(text).is_none()).then_some(header)
+                numbers(text).is_none().then_some(header)
             });
-            return headers
-                .next()
-                .unwrap_or_else(|| without_header(separator, named, (index, line)));
+            let headers: Vec<_> = headers.collect();
+            let fits = |header: &Layout| [fields, named].contains(&header.names.len());
+            if let Some(header) = headers.iter().find(|header| fits(header)) {
+                return header.clone();
+            }
+            let misfit = headers.iter().find(|header| name_columns(&header.names));
+            return Layout {
+                misfit: misfit.map(|header| (header.line, header.names.len())),
+                ..without_header(separator, named, (index, line))
+            };
         }
         let [latest, text] = &mut above;
         *latest = Some((index, comment(line).unwrap_or(line)));
@@ -89,6 +96,19 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
         searched: limit,
         ..Layout::header(separator, separator.split(line), index)
     }
+}
+
+/// Whether one of these names is that of a time, and another one that of a position.
+fn name_columns(names: &[String]) -> bool {
+    let names = names.iter().map(|name| name.to_lowercase());
+    let [mut timed, mut placed] = [false; 2];
+    for name in names {
+        match has(&name, TIMES) {
+            true => timed = true,
+            false => placed |= has(&name, POSITIONS),
+        }
+    }
+    timed && placed
 }
 
 /// The layout of a text without names, whose first row is at an index.
