@@ -43,7 +43,7 @@ use recent::Recent;
 /// a whole number of counts/tick an update takes few instructions. Every other sample of the window is
 /// tested once; with N above 16 the end-fit tests only those at which the step changes, which decide.
 /// With n and d = 1 known at compile time an update takes at most 76 + 19 n instructions of a Cortex-M4F
-/// for the end-fit, 110 + 21 n with N above 16, and 136 + 38 n for the best-fit, 181 + 66 n where its
+/// for the end-fit, 112 + 20 n with N above 16, and 136 + 38 n for the best-fit, 181 + 66 n where its
 /// products need 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
 ///
 /// ```

@@ -89,19 +89,21 @@ impl Fit for EndFit {
 
 #[inline(always)]
 fn end_fit<const N: usize>(recent: &Recent<N, Stretches<N>>, n: usize, d: i32) -> Window {
-    let (older, straight) = (recent.older(n), recent.straight());
-    let intervals = if Stretches::<N>::KEPT {
-        accepted_of_stretches(older, recent.stretches(n), straight, d)
+    let straight = recent.straight();
+    let newest = straight.newest;
+    // The last sample is always inside.
+    let (intervals, last) = if Stretches::<N>::KEPT {
+        let (samples, stretches) = recent.by_age(n);
+        let intervals = accepted_of_stretches(samples, stretches, straight, d);
+        (intervals, samples.get(usize::from(intervals)))
     } else {
-        accepted_of_samples(older, straight, d)
+        let older = recent.older(n);
+        let intervals = accepted_of_samples(older, straight, d);
+        (intervals, older.get(usize::from(intervals).wrapping_sub(1)))
     };
-    // Always inside.
-    let oldest = older
-        .get(usize::from(intervals).wrapping_sub(1))
-        .unwrap_or(&straight.newest);
     Window {
         intervals,
-        slope: (straight.newest - *oldest).to_f32() / f32::from(intervals),
+        slope: (newest - *last.unwrap_or(&newest)).to_f32() / f32::from(intervals),
     }
 }
 
@@ -124,28 +126,26 @@ fn accepted_of_samples(older: &[Count], straight: Straight, d: i32) -> u8 {
 /// Number of accepted intervals. Of a stretch of equal steps only the oldest sample is tested: its samples lie on
 /// a line, along which the slope of the window and the limits of a sample are monotone.
 #[inline(always)]
-fn accepted_of_stretches(older: &[Count], stretches: &[u8], straight: Straight, d: i32) -> u8 {
+fn accepted_of_stretches(samples: &[Count], stretches: &[u8], straight: Straight, d: i32) -> u8 {
     let newest = straight.newest;
     let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
-    let mut seen = straight.intervals;
-    while let Some(stretch) = stretches.get(seen - 1) {
-        seen += usize::from(*stretch);
-        let Some(count) = older.get(seen - 1) else {
-            seen = older.len();
+    let mut age = straight.intervals;
+    while let Some(stretch) = stretches.get(age) {
+        age += usize::from(*stretch);
+        let Some(count) = samples.get(age) else {
+            age = samples.len() - 1;
             break;
         };
-        if !cone.narrow_from_inside((newest - *count).0, seen as i32, d) {
+        if !cone.narrow_from_inside((newest - *count).0, age as i32, d) {
             break;
         }
     }
-    // One interval is always accepted.
-    let outside = match older.get(seen.wrapping_sub(2)..seen) {
-        Some(&[newer, oldest]) => {
-            cone.outside((newest - oldest).0, seen as i32, (newer - oldest).0)
-        }
+    // The sample of age 1 is always accepted, and the one before it not read.
+    let outside = match samples.get(age - 1..=age) {
+        Some(&[newer, oldest]) => cone.outside((newest - oldest).0, age as i32, (newer - oldest).0),
         _ => 0,
     };
-    (seen - outside as usize) as u8
+    (age - outside as usize) as u8
 }
 
 impl Fit for BestFit {

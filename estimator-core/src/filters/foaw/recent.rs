@@ -1,6 +1,7 @@
 //! A ring of the newest counts.
 
 use core::fmt::Debug;
+use core::ops::Range;
 
 use super::fit::Straight;
 use crate::units::{Count, Counts};
@@ -150,26 +151,31 @@ impl<const N: usize, S: Steps> Recent<N, S> {
     /// The samples before the newest, newest first, at most `most` of them.
     #[inline(always)]
     pub(super) fn older(&self, most: usize) -> &[Count] {
-        window(self.older.as_flattened(), self.head, most.min(N))
+        let head = self.head as usize;
+        inside(self.older.as_flattened(), head..head + most.min(N))
     }
 }
 
 impl<const N: usize> Recent<N, Stretches<N>> {
-    /// For each sample before the newest the number of equal steps before it, newest first; nothing where
-    /// they are not [kept](Stretches::KEPT).
+    /// The samples and the numbers of equal steps before them, at the index of their age in ticks, at most
+    /// `most`. What is at index 0 has no meaning.
     #[inline(always)]
-    pub(super) fn stretches(&self, most: usize) -> &[u8] {
-        if Stretches::<N>::KEPT {
-            window(self.steps.0.as_flattened(), self.head, most.min(N))
-        } else {
-            &[]
-        }
+    pub(super) fn by_age(&self, most: usize) -> (&[Count], &[u8]) {
+        // A slice begins one before its first sample, so that an age needs no subtraction.
+        let head = match self.head as usize {
+            0 => N,
+            head => head,
+        };
+        let ages = head - 1..head + most.min(N);
+        (
+            inside(self.older.as_flattened(), ages.clone()),
+            inside(self.steps.0.as_flattened(), ages),
+        )
     }
 }
 
+/// The part at `range`, which is always inside.
 #[inline(always)]
-fn window<T>(twice: &[T], head: u32, length: usize) -> &[T] {
-    let head = head as usize;
-    // Always inside.
-    twice.get(head..head + length).unwrap_or(&[])
+fn inside<T>(of: &[T], range: Range<usize>) -> &[T] {
+    of.get(range).unwrap_or(&[])
 }
