@@ -74,9 +74,32 @@ const fn unit(names: &'static [&'static str], scale: Scale) -> Unit {
 }
 
 const SECONDS: &[&str] = &["s", "sec", "second", "seconds"];
-const MILLISECONDS: &[&str] = &["ms", "msec", "millis", "milliseconds"];
-const MICROSECONDS: &[&str] = &["us", "usec", "micros", "microseconds", "µs", "μs"];
-const NANOSECONDS: &[&str] = &["ns", "nsec", "nanos", "nanoseconds"];
+const MILLISECONDS: &[&str] = &[
+    "ms",
+    "msec",
+    "millis",
+    "millisec",
+    "millisecond",
+    "milliseconds",
+];
+const MICROSECONDS: &[&str] = &[
+    "us",
+    "usec",
+    "micros",
+    "microsec",
+    "microsecond",
+    "microseconds",
+    "µs",
+    "μs",
+];
+const NANOSECONDS: &[&str] = &[
+    "ns",
+    "nsec",
+    "nanos",
+    "nanosec",
+    "nanosecond",
+    "nanoseconds",
+];
 
 const TIME: &[Unit] = &[
     unit(SECONDS, Scale::Over(1.0)),
@@ -87,7 +110,16 @@ const TIME: &[Unit] = &[
 
 const POSITION: &[Unit] = &[
     unit(
-        &["counts", "count", "cts", "ticks", "pulses", "steps", "qc"],
+        &[
+            "counts",
+            "count",
+            "cts",
+            "ticks",
+            "pulses",
+            "steps",
+            "increments",
+            "qc",
+        ],
         Scale::Counts,
     ),
     unit(&["deg", "degree", "degrees", "°"], Scale::PerRev(360.0)),
@@ -190,6 +222,8 @@ mod tests {
     fn units_are_found_by_name() {
         let shown = |unit: Option<&Unit>| unit.map(Unit::name);
         assert_eq!(shown(Quantity::Time.unit("MS")), Some("ms"));
+        assert_eq!(shown(Quantity::Time.unit("millisec")), Some("ms"));
+        assert_eq!(shown(Quantity::Position.unit("Steps")), Some("counts"));
         assert_eq!(shown(Quantity::Current.unit("N.m")), Some("N.m"));
         assert_eq!(shown(Quantity::Time.unit("deg")), None);
         for (name, unit) in [
