@@ -141,8 +141,10 @@ fn accepted_of_stretches(samples: &[Count], stretches: &[u8], straight: Straight
         }
     }
     // The sample of age 1 is always accepted, and the one before it not read.
-    let outside = match samples.get(age - 1..=age) {
-        Some(&[newer, oldest]) => cone.outside((newest - oldest).0, age as i32, (newer - oldest).0),
+    let outside = match (samples.get(age - 1), samples.get(age)) {
+        (Some(newer), Some(oldest)) => {
+            cone.outside((newest - *oldest).0, age as i32, (*newer - *oldest).0)
+        }
         _ => 0,
     };
     (age - outside as usize) as u8
