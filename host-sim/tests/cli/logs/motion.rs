@@ -19,6 +19,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("text-before-header.csv", ""),
     ("header-in-comment.txt", ""),
     ("no-header.csv", "--column t=1:ms,counts_large=2:rev"),
+    ("notes-in-header.csv", "--column t=1:ms,counts_large=2:rev"),
     (
         "no-time.csv",
         "--column counts_large=encoder --row-rate 1000",

@@ -22,6 +22,15 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
             "--column t=1:s,counts_large=2:counts",
         ],
     ),
+    (
+        "notes-in-header.csv",
+        "",
+        &[
+            "line 1 has 4 names, and the rows have 3 columns",
+            "write one name for each column, or give the numbers",
+            "--column t=1:s,counts_large=2:counts",
+        ],
+    ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
     (
         "not-a-number.csv",
