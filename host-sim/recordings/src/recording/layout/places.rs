@@ -1,0 +1,181 @@
+//! The columns of a text that are read.
+
+use terminal::failure::Failure;
+
+use super::super::endings::Ending;
+use super::super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
+use super::super::header;
+use super::super::options::{Column, ReadOptions};
+use super::super::units::Unit;
+use super::Layout;
+
+/// A column that is read.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Place {
+    pub(in super::super) column: Column,
+    /// Its index in a row.
+    pub(in super::super) place: usize,
+    pub(in super::super) unit: &'static Unit,
+}
+
+/// The columns that are read.
+#[derive(Debug)]
+pub(in super::super) struct Places {
+    /// The program that wrote the log, if it is known.
+    pub(in super::super) format: Option<&'static Format>,
+    columns: Vec<Place>,
+    /// The column of time that --row-rate replaces.
+    pub(in super::super) replaced_time: Option<Place>,
+    /// Whether a column was found because its name says what it is.
+    pub(in super::super) by_names: bool,
+}
+
+impl Places {
+    pub(in super::super) fn get(&self, column: Column) -> Option<Place> {
+        let found = self.columns.iter().find(|place| place.column == column);
+        found.copied()
+    }
+
+    pub(in super::super) fn all(&self) -> &[Place] {
+        &self.columns
+    }
+
+    /// Adds time and position by names that say what they are, if both are read then.
+    fn add_stating(&mut self, layout: &Layout, options: &ReadOptions) {
+        let needed = match options.row_rate_hz {
+            None => &[Column::T, Column::CountsLarge][..],
+            Some(_) => &[Column::CountsLarge],
+        };
+        let lacking = needed.iter().filter(|column| self.get(**column).is_none());
+        let lacking: Vec<_> = lacking.collect();
+        let found: Option<Vec<_>> = lacking
+            .iter()
+            .map(|column| layout.stating(**column, &self.columns))
+            .collect();
+        if let (None, Some(found)) = (self.format, found) {
+            self.by_names = !found.is_empty();
+            self.columns.extend(found);
+        }
+    }
+
+    /// Adds the column of the project's own name.
+    fn add_own(&mut self, column: Column, layout: &Layout, name: &str) -> Result<(), Failure> {
+        let called = |name: &&String| *name == column.name();
+        if layout.names.iter().filter(called).count() > 1 {
+            return Err(Failure::Input(format!(
+                "{name}: line {}: two columns {}; rename or remove one",
+                layout.line,
+                column.name()
+            )));
+        }
+        let place = layout.names.iter().position(|name| name == column.name());
+        let Some(place) = place else {
+            return Ok(());
+        };
+        let unit = match layout.ending(column.quantity(), place) {
+            Ending::Unit(unit) => unit,
+            Ending::Nothing => &column.quantity().units()[0],
+            Ending::Unknown(unit) => {
+                return Err(header::unknown_unit(column, place, unit, layout, name));
+            }
+        };
+        self.columns.push(Place {
+            column,
+            place,
+            unit,
+        });
+        Ok(())
+    }
+}
+
+impl Layout {
+    /// The columns to read.
+    pub(in super::super) fn places(
+        &self,
+        options: &ReadOptions,
+        name: &str,
+    ) -> Result<Places, Failure> {
+        let mut places = Places {
+            format: self.format(options),
+            columns: Vec::new(),
+            replaced_time: None,
+            by_names: false,
+        };
+        for column in Column::ALL {
+            if let Some(mapping) = options.mapping(column) {
+                places.columns.push(self.mapped(mapping, name)?);
+            } else if !column
+                .command()
+                .is_some_and(|command| options.mapping(command).is_some())
+            {
+                // Who names the column of the current wants that one.
+                places.add_own(column, self, name)?;
+            }
+        }
+        if let Some(format) = places.format {
+            let names = match SIMPLEFOC_COLUMNS
+                .iter()
+                .find(|names| names.len() == self.names.len())
+            {
+                Some(names) if !self.has_header() => {
+                    names.iter().map(|name| (*name).to_owned()).collect()
+                }
+                _ => self.names.clone(),
+            };
+            for found in format.find(&names) {
+                let unit = found.column.quantity().unit(found.unit);
+                if let (Some(unit), None) = (unit, places.get(found.column)) {
+                    places.columns.push(Place {
+                        column: found.column,
+                        place: found.place,
+                        unit,
+                    });
+                }
+            }
+        }
+        if let Some(hz) = options.row_rate_hz {
+            if options.mapping(Column::T).is_some() {
+                return Err(Failure::Input(format!(
+                    "{name}: --row-rate {hz}: --column names a column of time; leave one of the two out"
+                )));
+            }
+            places.replaced_time = places.get(Column::T);
+            places.columns.retain(|place| place.column != Column::T);
+        }
+        places.add_stating(self, options);
+        if let (Some(modulus), None) = (options.modulus[1], places.get(Column::CountsSmall)) {
+            return Err(Failure::Input(format!(
+                "{name}: --modulus counts_small={modulus}: there is no column counts_small; name it with \
+                 --column counts_small=THEIRS, or leave the option out"
+            )));
+        }
+        let needs = |column| match places.get(column) {
+            Some(_) => Ok(()),
+            None => Err(header::missing(column, self, &places, name)),
+        };
+        if options.row_rate_hz.is_none() {
+            if places
+                .format
+                .is_some_and(|format| std::ptr::eq(format, &SIMPLEFOC))
+                && places.get(Column::T).is_none()
+            {
+                return Err(header::without_time(&SIMPLEFOC, name));
+            }
+            // A time that is known by its name is not what is missing.
+            if self.stating(Column::T, &places.columns).is_some() {
+                needs(Column::CountsLarge)?;
+            }
+            needs(Column::T)?;
+        }
+        needs(Column::CountsLarge)?;
+        for [one, other] in [
+            [Column::EdgeTick, Column::EdgeBound],
+            [Column::EdgeBound, Column::EdgeTick],
+        ] {
+            if places.get(one).is_some() {
+                needs(other)?;
+            }
+        }
+        Ok(places)
+    }
+}
