@@ -210,7 +210,7 @@ impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
     // Without a call, which needs the sample in memory.
     #[inline(always)]
     fn update_of_memory(&self, state: &mut ModelBankState<K>, sample: &Sample) -> CountsPerTick {
-        match self.advance(state, sample, None) {
+        match self.advance(state, sample, None, state.reads_stamps()) {
             Some(_) => CountsPerTick(state.velocity()),
             None => CountsPerTick(0.0),
         }
@@ -234,7 +234,7 @@ impl<const K: usize, S: Stamps> VaryingPeriod for ModelBank<K, S> {
             edges_within: smaller(self.ladder.correlation_time(), period),
             change: self.change * period,
         };
-        match self.advance_over(state, sample, None, &over) {
+        match self.advance_over(state, sample, None, state.reads_stamps(), &over) {
             Some(_) => CountsPerTick(state.velocity()),
             None => CountsPerTick(0.0),
         }
@@ -261,14 +261,15 @@ struct Evidence {
 }
 
 impl<const K: usize, S: Stamps> ModelBank<K, S> {
-    /// Advances the state by one tick, over which the known acceleration is `input`, counts/tick². `None`
-    /// at rest.
+    /// Advances the state by one tick, over which the known acceleration is `input`, counts/tick². An edge
+    /// is used if `stamped`. `None` at rest.
     #[inline(always)]
     fn advance(
         &self,
         state: &mut ModelBankState<K>,
         sample: &Sample,
         input: Option<f32>,
+        stamped: bool,
     ) -> Option<Evidence> {
         let over = Over {
             predict: &self.ladder,
@@ -276,7 +277,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
             edges_within: 1.0,
             change: self.change,
         };
-        self.advance_over(state, sample, input, &over)
+        self.advance_over(state, sample, input, stamped, &over)
     }
 
     /// Advances the state as [`ModelBank::advance`], over the interval `over`.
@@ -286,11 +287,13 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
         state: &mut ModelBankState<K>,
         sample: &Sample,
         input: Option<f32>,
+        stamped: bool,
         over: &Over<impl Predict>,
     ) -> Option<Evidence> {
         let displacement = sample.count - state.anchor;
         state.anchor = sample.count;
         let edge = self.stamps.fresh_within(sample, over.edges_within);
+        let moved = state.still == 0;
         if displacement.0 != 0 || edge.is_some() {
             state.still = 0;
         } else if state.resting {
@@ -307,13 +310,13 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
         }
         let ends = Ends::of(displacement.0 != 0);
         let judged = match edge {
-            Some(mut edge) => {
+            Some(mut edge) if stamped => {
                 if let Some(input) = input {
                     edge.position -= 0.5 * input * edge.age * edge.age;
                 }
-                state.correct_by_edge(&edge, ends)
+                state.correct_by_edge(&edge, ends, moved)
             }
-            None => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS),
+            _ => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS || !stamped),
         };
         let likelihood = state.weigh(&judged, over.change, S::NOISE);
         if state.still >= self.rest {

@@ -218,8 +218,10 @@ impl<S: Stamps, I: BankInput> VelocityEstimator for DrivenBank<S, I> {
             state.driven = state.plain.narrowed();
             state.probability = START;
         }
-        let plain = self.plain.advance(&mut state.plain, sample, None);
-        let driven = self.driven.advance(&mut state.driven, sample, Some(input));
+        // Both use the edge or neither: their likelihoods are those of the same measurement.
+        let stamped = state.plain.reads_stamps();
+        let plain = self.plain.advance(&mut state.plain, sample, None, stamped);
+        let driven = (self.driven).advance(&mut state.driven, sample, Some(input), stamped);
         let (Some(plain), Some(driven)) = (plain, driven) else {
             return CountsPerTick(0.0);
         };

@@ -61,7 +61,7 @@ const fn divisor(deviations: f32) -> f32 {
 /// Weight of a new member.
 const NEW_WEIGHT: f32 = 0.2;
 
-/// Range of R of a boundary, counts².
+/// Range of R of a boundary, counts². At the largest one the stamps are too noisy to be used.
 const LEAST_OF_BOUNDARY: f32 = 3e-4;
 const LARGEST_OF_BOUNDARY: f32 = 0.1;
 
@@ -82,7 +82,7 @@ pub(super) struct Judged<const K: usize> {
 /// Change of R by an edge, in R.
 const GAIN_OF_EDGE: f32 = 0.1;
 
-/// Change of R by a count: in the product of two shifts, and in R by the size of a shift.
+/// Change of R in the product of two innovations or shifts, and by a count in R by the size of a shift.
 const GAIN_OF_PRODUCT: f32 = 0.02;
 const GAIN_OF_SIZE: f32 = 0.03;
 
@@ -111,6 +111,12 @@ impl<const K: usize> ModelBankState<K> {
     #[must_use]
     pub const fn boundary_variance(&self) -> f32 {
         self.noise
+    }
+
+    /// Whether the boundaries are exact enough for their stamps to be used.
+    #[inline(always)]
+    pub(super) const fn reads_stamps(&self) -> bool {
+        self.noise < LARGEST_OF_BOUNDARY
     }
 
     /// The weighted mean of `part` of each member.
@@ -171,9 +177,14 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by an edge and then by the quantisation interval of the count, and R by the
-    /// correlation of two innovations.
+    /// correlation of two innovations, and by their product if the tick before `moved` too.
     #[inline(always)]
-    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge, ends: &Ends) -> Judged<K> {
+    pub(super) fn correct_by_edge(
+        &mut self,
+        edge: &FreshEdge,
+        ends: &Ends,
+        moved: bool,
+    ) -> Judged<K> {
         let mut innovations = [Innovation::default(); K];
         let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
@@ -196,11 +207,7 @@ impl<const K: usize> ModelBankState<K> {
                 0.5 * error * error * per_variance,
             );
         }
-        let correlation = limited(error * self.innovation / variance, 1.0);
-        let noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
-        // Both ends are constants: the panic of `clamp` is removed.
-        self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
-        self.innovation = error;
+        self.learn_noise_of_edges(error, variance, moved);
         Judged {
             likelihoods,
             variance: middle,
@@ -231,24 +238,45 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Changes R by the `shift` of a position whose variance with its noise is `variance`.
-    ///
-    /// Alternating shifts are noise. A motion that the members cannot follow makes two alternate, but seldom three.
+    /// The product of an innovation or a shift and the one before. A negative one is 0 unless it follows another:
+    /// alternating innovations are noise, but a motion that the members cannot follow makes two alternate, and
+    /// seldom three.
     #[inline(always)]
-    fn learn_noise(&mut self, shift: f32, variance: f32) {
-        let product = shift * self.innovation;
+    fn product(&mut self, innovation: f32) -> f32 {
+        let product = innovation * self.innovation;
         let alternated = self.alternates;
+        self.innovation = innovation;
         self.alternates = product < 0.0;
-        let product = if self.alternates && !alternated {
+        if self.alternates && !alternated {
             0.0
         } else {
-            limited(product, variance)
-        };
+            product
+        }
+    }
+
+    /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the one
+    /// before in parts of R, which finds an R that is nearly right, and by a product below 0, which raises one that
+    /// is far too small. Between edges that are ticks apart the motion has changed: their product says nothing.
+    #[inline(always)]
+    fn learn_noise_of_edges(&mut self, error: f32, variance: f32, moved: bool) {
+        let correlation = limited(error * self.innovation / variance, 1.0);
+        let product = self.product(error);
+        let mut noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
+        if moved && product < 0.0 {
+            noise -= GAIN_OF_PRODUCT * limited(product, variance);
+        }
+        // Both ends are constants: the panic of `clamp` is removed.
+        self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
+    }
+
+    /// Changes R by the `shift` of a position whose variance with its noise is `variance`.
+    #[inline(always)]
+    fn learn_noise(&mut self, shift: f32, variance: f32) {
+        let product = limited(self.product(shift), variance);
         let size = smaller(shift * shift / variance, LARGEST) - USUAL;
         let noise = self.noise + GAIN_OF_SIZE * size * self.noise - GAIN_OF_PRODUCT * product;
         // Both ends are constants: the panic of `clamp` is removed.
         self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);
-        self.innovation = shift;
     }
 
     /// Updates the weights by the likelihoods, with the probability `change` of a change of q. Returns

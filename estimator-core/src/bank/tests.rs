@@ -1,4 +1,5 @@
-//! The correction by a quantisation interval whose ends are noisy, and the choice of two members.
+//! The correction by a quantisation interval whose ends are noisy, the noise that is learned, and the choice of two
+//! members.
 
 extern crate std;
 
@@ -7,6 +8,7 @@ use super::ladder::Ladder;
 use super::member::Member;
 use super::state::tests::judged;
 use super::state::{LEAST_OF_COUNT, ModelBankState};
+use crate::edge_clock::FreshEdge;
 use crate::units::Count;
 
 /// Probability that a position plus noise is inside ±1/2, and mean and variance of the position if so, by
@@ -111,6 +113,49 @@ fn noise_of_a_count_grows_where_shifts_alternate() {
     near(after(&[0.0; 4], true), -4.0 * 0.015 * 0.01);
     assert_eq!(after(&[2.0, -2.0, 2.0], false), 0.01);
     assert_eq!(after(&[2.0; 20], true), LEAST_OF_COUNT);
+}
+
+/// Two innovations of alternating signs raise R by a tenth, a third one of edges in every tick by a share of its
+/// variance besides. Innovations of one sign lower R.
+#[test]
+fn noise_of_a_boundary_grows_where_innovations_alternate() {
+    let edge = FreshEdge {
+        phase: 0,
+        position: 0.0,
+        age: 0.0,
+    };
+    let after = |positions: &[f32], moved: bool| {
+        let mut state = ModelBankState::<3>::start(Count(0), 0.01);
+        for position in positions {
+            for member in &mut state.members {
+                *member = Member::START;
+                member.position = *position;
+            }
+            state.correct_by_edge(&edge, Ends::of(true), moved);
+        }
+        assert_eq!(state.reads_stamps(), state.noise < 0.1);
+        state.noise
+    };
+    let near = |found: f32, expected: f32| {
+        assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+    };
+    let added = 0.02 * (1.0 / 12.0 + 0.011);
+    for moved in [true, false] {
+        near(after(&[2.0], moved), 0.01);
+        near(after(&[2.0, -2.0], moved), 0.011);
+        near(after(&[2.0, 2.0], moved), 0.009);
+        near(after(&[2.0, -2.0, -2.0], moved), 0.009 * 1.1);
+        assert_eq!(after(&[2.0; 50], moved), 3e-4);
+    }
+    near(after(&[2.0, -2.0, 2.0], false), 0.0121);
+    near(after(&[2.0, -2.0, 2.0], true), 0.0121 + added);
+    // A product below the variance counts as it is.
+    let grown = 1.0 + 0.1 * 0.01 / (1.0 / 12.0 + 0.01);
+    near(
+        after(&[0.1, -0.1, 0.1], true),
+        0.01 * grown * grown + 0.02 * 0.01,
+    );
+    assert_eq!(after(&[2.0, -2.0].repeat(20), true), 0.1);
 }
 
 #[test]

@@ -157,7 +157,9 @@ fn an_edge_after_any_uncertainty_leaves_numbers() {
             age: uniform() * uniform(),
         };
         let before = state;
-        let likelihoods = state.correct_by_edge(&edge, Ends::of(true)).likelihoods;
+        let likelihoods = state
+            .correct_by_edge(&edge, Ends::of(true), true)
+            .likelihoods;
         for (member, likelihood) in state.members.iter().zip(likelihoods) {
             let case = std::format!("{edge:?} {:?} {member:?}", before.members[0]);
             let near = 2.0 + edge.age * variance.sqrt();

@@ -155,10 +155,13 @@ impl Definition {
         let moved = changed || edge.is_some();
         let rest = (0.3 / self.period).floor();
         let was_at_rest = self.still >= rest;
+        let moved_before = self.still == 0.0;
         self.still = if moved { 0.0 } else { self.still + interval };
         if was_at_rest && !moved {
             return 0.0;
         }
+        let is_exact = self.stamps && self.noise < 0.1;
+        let edge = edge.filter(|_| is_exact);
         self.reset();
         self.shift();
         let (transition, noise) = discretised(interval * self.period);
@@ -212,23 +215,27 @@ impl Definition {
             filter.p -= k * k.transpose() * (1.0 - kept);
             likelihoods.push(likelihood.unwrap_or(probability));
         }
-        if edge.is_some() {
+        if edge.is_some() || !is_exact {
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
-            self.noise = (self.noise * (1.0 - 0.1 * correlation)).clamp(3e-4, 0.1);
-            self.innovation = error;
-        } else if !self.stamps {
-            let product = error * self.innovation;
-            let is_first = product < 0.0 && !self.alternates;
-            self.alternates = product < 0.0;
+            let is_first = correlation < 0.0 && !self.alternates;
             let product = if is_first {
                 0.0
             } else {
-                product.clamp(-variance, variance)
+                correlation * variance
             };
-            let size = (error * error / variance).min(1.5) - 0.5;
-            let noise = self.noise * (1.0 + 0.03 * size) - 0.02 * product;
-            self.noise = noise.clamp(1e-5, 1e4);
+            self.alternates = correlation < 0.0;
             self.innovation = error;
+            self.noise = if edge.is_some() {
+                let added = if moved_before {
+                    0.02 * (-product).max(0.0)
+                } else {
+                    0.0
+                };
+                (self.noise * (1.0 - 0.1 * correlation) + added).clamp(3e-4, 0.1)
+            } else {
+                let size = (error * error / variance).min(1.5) - 0.5;
+                (self.noise * (1.0 + 0.03 * size) - 0.02 * product).clamp(1e-5, 1e4)
+            };
         }
         let change = interval * self.period / (members as f64 - 1.0);
         for (weight, likelihood) in self.weights.iter_mut().zip(likelihoods) {

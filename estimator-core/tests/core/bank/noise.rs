@@ -2,7 +2,7 @@
 
 use estimator_core::{Count, Hertz, Imm, ImmEdge, ModelBank, Sample, VelocityEstimator};
 
-use super::{CLOCK, Random, Seen, hand};
+use super::{CLOCK, Random, Seen, hand, rms};
 
 #[test]
 fn the_noise_of_boundaries_is_estimated() {
@@ -60,4 +60,56 @@ fn the_noise_of_counts_is_estimated() {
         assert!(mean >= lowest && mean <= highest, "{deviation}: {mean}");
         assert!(ratio < share, "{deviation}: {ratio}");
     }
+}
+
+/// `deviation` times a Gaussian noise, as a function of time in s, that changes `hz` times a second and lasts
+/// `seconds`.
+fn noise(deviation: f64, hz: f64, seconds: f64, seed: u64) -> impl Fn(f64) -> f64 {
+    let mut random = Random(seed);
+    // The sum of three has the variance 1.
+    let mut one = || (0..3).map(|_| random.next()).sum::<f64>() * deviation;
+    let mut values: Vec<f64> = (0..(hz * seconds) as usize).map(|_| one()).collect();
+    values.extend([0.0, 0.0]);
+    move |t: f64| {
+        let place = (t * hz).clamp(0.0, (values.len() - 2) as f64);
+        let at = (place as usize).min(values.len() - 2);
+        values[at] + (place - at as f64) * (values[at + 1] - values[at])
+    }
+}
+
+/// A magnetic encoder with noisy lines, 1, 4 or 8 times a tick. From a noise of a count on, the stamps are worth
+/// nothing, and the bank is that on counts. A smaller one is a noise of the boundaries.
+#[test]
+fn noisy_stamps_do_no_harm() {
+    for (counts, per_tick, rate) in [(4096.0, 1.0, 1e3), (1024.0, 8.0, 1e3), (16_384.0, 4.0, 4e3)] {
+        let bank: ImmEdge = ModelBank::with_edges(CLOCK, Hertz(rate)).expect("valid");
+        let clean = Seen::new(rate, 4000, 0.0, &|t| counts * hand(t));
+        for (deviation, share) in [
+            (0.1, 0.2),
+            (0.3, 0.35),
+            (1.0, 0.12),
+            (3.0, 0.06),
+            (10.0, 0.06),
+        ] {
+            let noise = noise(deviation, per_tick * rate, 4001.0 / rate, 29);
+            let mut seen = Seen::new(rate, 4000, 0.0, &|t| counts * hand(t) + noise(t));
+            seen.velocities.clone_from(&clean.velocities);
+            let ratio = seen.rms(&seen.run(&bank)) / seen.rms(&seen.finite_difference());
+            println!("{counts} counts at {rate} Hz, noise {deviation}: {ratio}");
+            assert!(ratio < share, "{counts}, {deviation}: {ratio}");
+        }
+    }
+}
+
+/// A disturbance of a second makes the stamps noisy. Two seconds later they are used as if it had not been.
+#[test]
+fn stamps_are_used_again_after_a_disturbance() {
+    let noise = noise(3.0, 1000.0, 1.0, 31);
+    let bank: ImmEdge = ModelBank::with_edges(CLOCK, Hertz(1000.0)).expect("valid");
+    let clean = Seen::new(1000.0, 5000, 0.0, &|t| 4096.0 * hand(t));
+    let seen = Seen::new(1000.0, 5000, 0.0, &|t| 4096.0 * hand(t) + noise(t));
+    let error = |velocities: &[f64]| rms(&clean.velocities[3000..], &velocities[3000..]);
+    let (disturbed, exact) = (error(&seen.run(&bank)), error(&clean.run(&bank)));
+    println!("{disturbed} of {exact}");
+    assert!(disturbed < 1.02 * exact, "{disturbed} of {exact}");
 }
