@@ -236,10 +236,19 @@ fn outcome<'a>(
 ) -> Result<Outcome<'a>, Failure> {
     let failed = |why: String| Failure::Input(format!("{name}: {why}"));
     let rows = recording.t.len();
-    if rows < FEWEST_ROWS || rows as f64 <= 2.0 * SKIP_S * recording.trace.rate_hz {
-        let needed = FEWEST_ROWS.max((2.0 * SKIP_S * recording.trace.rate_hz) as usize + 1);
+    let rate_hz = recording.trace.rate_hz;
+    let passed = (2.0 * SKIP_S * rate_hz) as usize + 1;
+    if rows < FEWEST_ROWS.max(passed) {
+        let rate = match passed > FEWEST_ROWS {
+            true => format!(
+                ", {} s at {rate_hz} rows a second; check the unit of t if this is not the rate",
+                2.0 * SKIP_S
+            ),
+            false => String::new(),
+        };
         return Err(failed(format!(
-            "{rows} rows; scores need at least {needed}"
+            "{rows} rows; scores need at least {}{rate}",
+            FEWEST_ROWS.max(passed)
         )));
     }
     let truth = recording.trace.true_omega.as_deref();

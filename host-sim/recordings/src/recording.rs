@@ -208,9 +208,18 @@ fn lengths(columns: &Trace) -> [(&'static str, Option<usize>); 5] {
 /// A log of a test, read with the text of `--column` if it is not empty.
 #[cfg(test)]
 fn read_log(text: &str, columns: &str) -> Result<Recording, String> {
+    read_log_at(None, text, columns)
+}
+
+/// As [`read_log`], with a value of `--row-rate`, Hz.
+#[cfg(test)]
+fn read_log_at(row_rate_hz: Option<f64>, text: &str, columns: &str) -> Result<Recording, String> {
     let mut options = ReadOptions::default();
     if !columns.is_empty() {
         options.add_columns(columns).unwrap();
+    }
+    if let Some(hz) = row_rate_hz {
+        options.set_row_rate(hz).unwrap();
     }
     Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
 }

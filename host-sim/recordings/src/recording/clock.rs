@@ -81,6 +81,19 @@ impl Uneven {
     }
 }
 
+/// Rows a second above which a unit of the time is more likely wrong.
+const FASTEST_HZ: f64 = 1e5;
+
+/// What to check where the rows of a log come at `rate_hz`; `None` if the rate is one of a control loop.
+pub(super) fn fast(rate_hz: f64) -> Option<String> {
+    (rate_hz > FASTEST_HZ).then(|| {
+        format!(
+            "{rate_hz} rows a second are more than {FASTEST_HZ}: check that t is not in ms, us or ns, which --column \
+             t=NAME:ms states"
+        )
+    })
+}
+
 /// Gaps of `t` in which rows are missing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gaps {

@@ -160,8 +160,8 @@ impl<'a> Columns<'a> {
         Ok(())
     }
 
-    /// Whether a row has its time and values of other signals, and no position: in some logs each row has the
-    /// signals that changed.
+    /// Whether a row has its time and no position, and is one of other signals: in some logs each row has the signals that
+    /// changed. A row of fields with names has the value of one of them; in one with separators all fields are there.
     fn is_of_others(&self, row: &Row) -> Result<bool, Failure> {
         let [Some(time), Some(position)] =
             [Column::T, Column::CountsLarge].map(|column| self.place(column))
@@ -173,7 +173,10 @@ impl<'a> Columns<'a> {
             let text = row.text(place.column.name(), place.place)?;
             Ok(is_new && !is_without_value(text))
         };
-        let others = || row.has_value(|place| ![time.place, position.place].contains(&place));
+        let others = || match row.marks {
+            [] => row.record.len() > 2,
+            _ => row.has_value(|place| ![time.place, position.place].contains(&place)),
+        };
         Ok(!has(position)? && has(time)? && others())
     }
 
@@ -266,6 +269,7 @@ impl<'a> Columns<'a> {
     ) -> Result<Recording, Failure> {
         let mut notes = self.checked(name, places, layout)?;
         let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
+        notes.extend(clock::fast(rate_hz));
         let mut gaps = Gaps::default();
         for (k, step) in self.t.windows(2).enumerate() {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));
@@ -344,6 +348,12 @@ impl<'a> Columns<'a> {
             self.measured()
                 .map(|(column, lack)| measured_note(column, lack)),
         );
+        if let Some(line) = layout.rows_above {
+            notes.push(format!(
+                "the rows from line {line} to the header in line {} are not read: remove them, or cut the log there",
+                layout.line
+            ));
+        }
         if layout.is_stamped {
             notes.push(
                 "the times of a serial monitor before the lines are not read: they are those of arrival".to_owned(),

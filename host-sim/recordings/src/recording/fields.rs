@@ -1,6 +1,7 @@
 //! What is wrong with a field that is no number, and the remedy.
 
 use super::options::Column;
+use super::units::Quantity;
 
 /// Characters of a field that a message shows.
 const SHOWN: usize = 40;
@@ -41,12 +42,13 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
         list if list.starts_with(['[', '{']) => {
             "write one JSON object a line, with one number a field".to_owned()
         }
-        time if time.contains(':') && time.starts_with(digits) => {
-            match column == Column::T.name() {
-                true => "write it in s, as 2025-03-01T12:00:00.000, or as 12:00:00.000".to_owned(),
-                false => "it is a time: name another column with --column".to_owned(),
-            }
+        time if column == Column::T.name() && is_date(time) => {
+            "write it in s, as 2025-03-01T12:00:00.000, or as 12:00:00.000".to_owned()
         }
+        time if column != Column::T.name() && time.contains(':') && time.starts_with(digits) => {
+            "it is a time: name another column with --column".to_owned()
+        }
+        measured if has_unit(measured) => "write it without its unit".to_owned(),
         minus if minus.starts_with('\u{2212}') => "write the minus sign as '-'".to_owned(),
         _ if has_thousands(text) => "write it without separators of thousands".to_owned(),
         _ if text.contains(',') => "write it with a decimal point".to_owned(),
@@ -57,7 +59,27 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
     }
 }
 
-/// Whether groups of three digits follow the first one: 1,000 or 1'234.5; or `,` and `.` both occur.
+/// Whether a field is a date or a time of a form that is not read: it has a number with colons, or one with two hyphens
+/// or a T in it.
+fn is_date(text: &str) -> bool {
+    let has_digits = text.contains(|c: char| c.is_ascii_digit());
+    let begins = text.starts_with(|c: char| c.is_ascii_digit());
+    has_digits
+        && (text.contains(':') || begins && (text.matches('-').count() > 1 || text.contains('t')))
+}
+
+/// Whether a field is a number and a unit: 0.5 sec.
+fn has_unit(text: &str) -> bool {
+    let end = text
+        .trim_end_matches(|c: char| c.is_alphabetic() || matches!(c, '/' | '\u{b0}' | '%' | '.'));
+    let unit = &text[end.len()..];
+    end.trim_end().parse::<f64>().is_ok()
+        && Quantity::ALL
+            .iter()
+            .any(|quantity| quantity.unit(unit).is_some())
+}
+
+/// Whether groups of three digits follow the first one, which is not 0: 1,000 or 1'234.5; or `,` and `.` both occur.
 fn has_thousands(text: &str) -> bool {
     let marks = [',', '\'', '_', ' ', '\u{2019}', '\u{a0}', '\u{202f}'];
     let whole = text.split('.').next().unwrap_or_default();
@@ -67,6 +89,7 @@ fn has_thousands(text: &str) -> bool {
     let groups: Vec<_> = groups.collect();
     let in_threes = is_number(first)
         && first.len() <= 3
+        && !first.starts_with('0')
         && !groups.is_empty()
         && groups
             .iter()
@@ -105,6 +128,9 @@ mod tests {
             ("1'000", "write it without separators of thousands"),
             ("\"1.234,5\"", "write it without separators of thousands"),
             ("\"1,5\"", "write it with a decimal point"),
+            ("\"0,125\"", "write it with a decimal point"),
+            ("5 deg", "write it without its unit"),
+            ("5 x", "correct the field, or remove the row"),
             (
                 "\"[1,2]\"",
                 "write one JSON object a line, with one number a field",
@@ -128,6 +154,18 @@ mod tests {
                 "t,counts_large\n1-Mar-2025 12:00:00,0\n",
                 "'1-Mar-2025 12:00:00' is not a number; write it in s, as 2025-03-01T12:00:00.000, or as \
                  12:00:00.000",
+            ),
+            (
+                "t,counts_large\n20260301T120000Z,0\n",
+                "is not a number; write it in s, as 2025-03-01T12:00:00.000",
+            ),
+            (
+                "t,counts_large\nMar 1 2026 12:00:00,0\n",
+                "is not a number; write it in s, as 2025-03-01T12:00:00.000",
+            ),
+            (
+                "t,counts_large\n0.5 sec,0\n",
+                "'0.5 sec' is not a number; write it without its unit",
             ),
             (
                 "t,counts_large\ns,counts\n0,0\n",

@@ -153,7 +153,10 @@ pub(super) fn short(name: &str) -> String {
 pub(super) fn found(layout: &Layout) -> String {
     let number = layout.names.len();
     if !layout.has_header() {
-        let columns = format!("{number} columns, separated by {}", layout.separator.name());
+        let columns = match number {
+            1 => "1 column".to_owned(),
+            _ => format!("{number} columns, separated by {}", layout.separator.name()),
+        };
         return match layout.misfit {
             None => format!("there are no names but {columns}"),
             Some((line, names)) => {
@@ -200,7 +203,7 @@ mod tests {
             ),
             (
                 "",
-                "no column t; found: ''; the file has no names of columns",
+                "line 1: no column t; found: ''; the file has no rows; write t,counts_large in its first line",
             ),
             (
                 "T,counts_large\n0,1\n",

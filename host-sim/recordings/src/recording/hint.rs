@@ -3,7 +3,7 @@
 use super::endings::Ending;
 use super::formats::Ambiguous;
 use super::header::short;
-use super::layout::{Layout, POSITIONS, Places, TIMES, has};
+use super::layout::{Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
 use super::options::Column;
 use super::steps::to_digits;
 use super::units::Quantity;
@@ -28,6 +28,9 @@ fn times() -> Vec<&'static str> {
 
 /// The option `--column`, with names and units.
 pub(super) fn option(layout: &Layout) -> String {
+    if layout.names.is_empty() {
+        return "the file has no rows; write t,counts_large in its first line, and a row below for each sample".to_owned();
+    }
     if layout.names.iter().all(String::is_empty) && layout.searched.is_some() {
         return "remove lines above the header".to_owned();
     }
@@ -40,30 +43,66 @@ pub(super) fn option(layout: &Layout) -> String {
             Some(_) => "write one name for each column, or ",
             None => "",
         };
-        return format!(
-            "{names}give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
-        );
+        return match (layout.has_rate, layout.names.len()) {
+            (true, last) => format!(
+                "{names}give the number of the column, for example --column counts_large={}:counts",
+                last.min(2)
+            ),
+            (false, 1) => format!(
+                "{names}give the number of the column and the rate of the rows, for example --column \
+                 counts_large=1:counts --row-rate 1000"
+            ),
+            (false, _) => format!(
+                "{names}give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
+            ),
+        };
     }
+    let time = || guess(layout, Column::T, &times(), "TIME");
     let parts = [
-        guess(layout, Column::T, &times(), "TIME"),
+        (!layout.has_rate).then(time).flatten(),
         guess(layout, Column::CountsLarge, &positions(), "POSITION"),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     format!(
-        "name the columns and units, for example --column '{}'",
-        parts.join(",")
+        "name the columns and units, for example --column '{}'{}",
+        parts.join(","),
+        only_indirect(layout).unwrap_or_default()
     )
+}
+
+/// The name of a position that is not measured at the shaft, where there is no other one.
+fn only_indirect(layout: &Layout) -> Option<String> {
+    let mut like = layout.names.iter().filter(|name| has(name, &positions()));
+    let first = like
+        .clone()
+        .find(|name| is_unfit(Column::CountsLarge, name))?;
+    (like.all(|name| is_unfit(Column::CountsLarge, name))).then(|| {
+        format!(
+            ": by its name '{}' is a rate, a target, an error, a difference or an electrical angle",
+            short(first)
+        )
+    })
+}
+
+/// Whether by its `name` a quantity is another one than `column`, whose words it has.
+fn is_unfit(column: Column, name: &str) -> bool {
+    match column {
+        Column::T => is_duration(name),
+        Column::CountsLarge => is_derived(name) || is_indirect(name),
+        _ => false,
+    }
 }
 
 /// What a log needs whose header has no column of time, by its names.
 pub(super) fn without_time(layout: &Layout) -> &'static str {
     let is_time = |(place, name): (usize, &String)| {
-        let lower = name.to_lowercase();
-        has(&lower, &times())
-            || lower == "t"
-            || matches!(layout.ending(Column::T.quantity(), place), Ending::Unit(_))
+        let could_be = has(name, &times())
+            || name.to_lowercase() == "t"
+            || matches!(layout.ending(Column::T.quantity(), place), Ending::Unit(_));
+        could_be && !is_duration(name)
     };
-    match layout.has_header() && !layout.names.iter().enumerate().any(is_time) {
+    let can_do_without = layout.has_header() && !layout.has_rate && !layout.names.is_empty();
+    match can_do_without && !layout.names.iter().enumerate().any(is_time) {
         true => ", or give the rate of the rows with --row-rate HZ in the place of a time",
         false => "",
     }
@@ -85,8 +124,11 @@ pub(super) fn current(places: &Places, layout: &Layout) -> Option<String> {
 fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<String> {
     let (ours, quantity) = (column.name(), column.quantity());
     let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
-    let has_unit = |place: &usize| matches!(layout.ending(quantity, *place), Ending::Unit(_));
-    let like = |name: &str| has(&name.to_lowercase(), words);
+    let has_unit = |place: &usize| {
+        let is_fit = !is_unfit(column, &layout.names[*place]);
+        is_fit && matches!(layout.ending(quantity, *place), Ending::Unit(_))
+    };
+    let like = |name: &str| has(name, words) && !is_unfit(column, name);
     let place = place(&|name| name == ours)
         .or_else(|| place(&|name| name.to_lowercase() == ours))
         .or_else(|| place(&like))
@@ -197,7 +239,7 @@ fn captured(layout: &Layout) -> Option<String> {
 fn levels(layout: &Layout) -> Option<String> {
     let places = &layout.two_levels;
     let mut others = (layout.names.iter().enumerate()).filter(|(place, _)| !places.contains(place));
-    if places.len() < 2 || others.any(|(_, name)| has(&name.to_lowercase(), &positions())) {
+    if places.len() < 2 || others.any(|(_, name)| has(name, &positions())) {
         return None;
     }
     let names = places.iter().map(|place| short(&layout.names[*place]));
@@ -215,7 +257,7 @@ pub(super) const fn example(quantity: Quantity) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use crate::recording::read_log as read;
+    use crate::recording::{read_log as read, read_log_at as read_at};
 
     #[test]
     fn columns_of_two_levels_are_named_where_no_position_is() {
@@ -253,6 +295,60 @@ mod tests {
     }
 
     #[test]
+    fn example_names_no_target_error_or_duration() {
+        for (names, said) in [
+            (
+                "time_s,ref_theta,theta",
+                "'t=time_s,counts_large=theta:counts'; read without",
+            ),
+            (
+                "time_s,error_count,angle_deg",
+                "'t=time_s,counts_large=angle_deg'; read without",
+            ),
+            (
+                "loop_time_us,time,counts",
+                "'t=time:s,counts_large=counts'; read without",
+            ),
+            (
+                "time_s,dpos_deg,pos_err",
+                "'t=time_s,counts_large=POSITION:counts': by its name 'dpos_deg' is a rate, a target, an error, a \
+                 difference or an electrical angle; read without",
+            ),
+        ] {
+            let error = read(&format!("{names}\n2,3,4\n3,4,5\n"), "").unwrap_err();
+            assert!(
+                error.contains(&format!("for example --column {said}")),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn example_has_no_time_where_the_rate_is_stated() {
+        for (text, said) in [
+            (
+                "x,y\n0,1\n1,2\n",
+                "for example --column 'counts_large=POSITION:counts'; read without",
+            ),
+            (
+                "0,1\n1,2\n",
+                "give the number of the column, for example --column counts_large=2:counts; read",
+            ),
+            (
+                "1\n2\n",
+                "give the number of the column, for example --column counts_large=1:counts; read",
+            ),
+        ] {
+            let error = read_at(Some(1000.0), text, "").unwrap_err();
+            assert!(error.contains(said), "{error}");
+        }
+        let error = read("1\n2\n", "").unwrap_err();
+        let said = "there are no names but 1 column; give the number of the column and the rate of the rows, for \
+                    example --column counts_large=1:counts --row-rate 1000";
+        assert!(error.contains(said), "{error}");
+    }
+
+    #[test]
     fn log_without_a_time_is_told_of_the_rate_of_its_rows() {
         let said = ", or give the rate of the rows with --row-rate HZ in the place of a time; ";
         for (header, tells) in [
@@ -261,6 +357,7 @@ mod tests {
             ("T,pos_deg", false),
             ("clock_ms,pos_deg", false),
             ("Timer,pos_deg", false),
+            ("dt_ms,pos_deg", true),
             ("a,pos_deg\n[ms],[deg]", false),
             ("a,pos_deg\n[A],[deg]", true),
         ] {

@@ -5,6 +5,7 @@ mod places;
 mod search;
 mod stating;
 mod unit_row;
+mod words;
 
 use terminal::failure::Failure;
 
@@ -18,8 +19,8 @@ use super::separator::{Separator, comment, stamp};
 pub(super) use places::{Place, Places};
 pub(super) use search::{UNKNOWN, is_number};
 use search::{fractional, is_content, named, numbers, probable, two_levels};
-pub(super) use stating::{POSITIONS, TIMES, has};
 use unit_row::UnitRow;
+pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 
 /// Number of the first lines among which the header is searched.
 pub(super) const SEARCHED: usize = 500;
@@ -54,6 +55,10 @@ pub(super) struct Layout {
     pub(super) remarks: bool,
     /// The rate of rows without a time as the text states it, Hz.
     pub(super) row_rate_hz: Option<f64>,
+    /// Whether --row-rate states the rate of the rows.
+    pub(super) has_rate: bool,
+    /// Line of the first row above a header that is in the middle of the text.
+    pub(super) rows_above: Option<u64>,
 }
 
 impl Layout {
@@ -108,6 +113,7 @@ impl Layout {
             layout.check_separator(&lines, name)?;
         }
         Ok(Self {
+            has_rate: options.row_rate_hz.is_some(),
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
             fractional: fractional(&layout, &lines),
@@ -135,6 +141,8 @@ impl Layout {
             is_stamped: false,
             remarks: false,
             row_rate_hz: None,
+            has_rate: false,
+            rows_above: None,
         }
     }
 

@@ -96,6 +96,13 @@ pub(super) struct Mapping {
     pub(super) unit: Option<&'static Unit>,
 }
 
+impl Mapping {
+    /// Whether the column is called by its number.
+    pub(super) fn is_number(&self) -> bool {
+        self.theirs.parse::<usize>().is_ok()
+    }
+}
+
 /// How a recording is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {

@@ -123,11 +123,16 @@ struct Wraps {
 
 impl Wraps {
     /// The time `t`, s, with the periods that have passed before `line`. A time that goes back by one of
-    /// `periods` within a hundredth has wrapped: in microseconds, if no more than 43 s are missing there.
+    /// `periods` within a hundredth has wrapped: in microseconds, if no more than 43 s are missing there. A signed
+    /// counter wraps to half a period below 0.
     fn unwrapped(&mut self, t: f64, periods: &[f64], line: u64) -> f64 {
         let (last, back) = (self.last, self.last - t);
-        let is_wrap = |period: f64| last < period && (back - period).abs() < NEAR * period;
-        if let Some(&period) = periods.iter().find(|period| t >= 0.0 && is_wrap(**period)) {
+        let is_wrap = |period: &&f64| {
+            let first = if t < 0.0 { -0.5 * **period } else { 0.0 };
+            let is_within = t >= first && last < first + **period;
+            is_within && (back - **period).abs() < NEAR * **period
+        };
+        if let Some(&period) = periods.iter().find(is_wrap) {
             self.passed += period;
             self.first.get_or_insert((line, period));
         }
@@ -194,6 +199,31 @@ mod tests {
             );
             assert_eq!(recording.notes, [said]);
         }
+    }
+
+    #[test]
+    fn signed_counter_wraps_to_negative_times() {
+        let text = "time_us,counts\n2147481648,0\n2147482648,1\n-2147483648,2\n-2147482648,3\n-2147481648,4\n";
+        let recording = read(text, "").unwrap();
+        let steps: Vec<_> = recording
+            .t
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        assert!(
+            steps.iter().all(|step| (step - 1e-3).abs() < 1e-6),
+            "{steps:?}"
+        );
+        let said =
+            "t wraps at 2^32 us and is unwrapped, the first time in line 4: a counter of 32 bits";
+        assert!(
+            recording.notes.iter().any(|note| note == said),
+            "{:?}",
+            recording.notes
+        );
+        // A time that is negative before goes back.
+        let error = read("time_us,counts\n0,0\n1000,1\n-500,2\n", "").unwrap_err();
+        assert!(error.contains("line 4"), "{error}");
     }
 
     #[test]

@@ -45,10 +45,10 @@ impl Row<'_> {
         std::str::from_utf8(bytes).map_err(|_| self.failure(column, "not text"))
     }
 
-    /// Whether a field that is read at one of the `places` may be cut. The fields of a row with names may have any order.
+    /// Whether a field that is read at one of the `places` may be cut or is missing. The fields of a row with names may have any order.
     pub(super) fn is_cut_at(&self, mut places: impl Iterator<Item = usize>) -> bool {
         let has_names = !self.marks.is_empty();
-        self.is_cut && (has_names || places.any(|place| place + 1 == self.record.len()))
+        self.is_cut && (has_names || places.any(|place| place + 1 >= self.record.len()))
     }
 
     /// Whether a column with a place that `is_meant` has a value.

@@ -85,7 +85,8 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
 }
 
 /// Length of the time stamp that a serial monitor writes before a line, as in `12:00:00.000 -> 1,2` (Arduino
-/// IDE) and `12:00:00.000 > 1,2` (PlatformIO); 0 for a line without one.
+/// IDE), `12:00:00.000 > 1,2` (PlatformIO) and `[2025-03-01 12:00:00.000] 1,2` (terminal programs); 0 for a line
+/// without one.
 pub(super) fn stamp(line: &[u8]) -> usize {
     const FORMS: [&[u8]; 2] = [b"00:00:00.000 -> ", b"00:00:00.000 > "];
     let fits = |(&byte, form): (&u8, &u8)| match form {
@@ -93,7 +94,20 @@ pub(super) fn stamp(line: &[u8]) -> usize {
         mark => byte == *mark,
     };
     let is_of = |form: &&[u8]| line.len() >= form.len() && line.iter().zip(*form).all(fits);
-    FORMS.into_iter().find(is_of).map_or(0, <[u8]>::len)
+    let of_form = FORMS.into_iter().find(is_of).map(<[u8]>::len);
+    of_form.or_else(|| bracketed(line)).unwrap_or(0)
+}
+
+/// Length of a date or a time in brackets, and the space after it.
+fn bracketed(line: &[u8]) -> Option<usize> {
+    /// Most bytes in the brackets.
+    const LONGEST: usize = 32;
+    let inside = line.strip_prefix(b"[")?;
+    let length = inside.iter().take(LONGEST).position(|byte| *byte == b']')?;
+    let time = &inside[..length];
+    let is_of_time = |byte: &u8| byte.is_ascii_digit() || b"-/:., T".contains(byte);
+    let is_time = time.iter().all(is_of_time) && time.contains(&b':');
+    (is_time && inside.get(length + 1) == Some(&b' ')).then_some(length + 3)
 }
 
 /// A line without the stamp of a serial monitor and the carriage return at its end.
@@ -201,13 +215,17 @@ mod tests {
 
     #[test]
     fn stamps_of_a_serial_monitor_are_cut_off() {
-        let text = "12:00:00.001 -> # a\n12:00:00.002 > 1,2\n12:00:00.003 -> \n";
-        assert_eq!(lines(text, Separator::Comma, 0), "\n1,2\n\n");
+        let text = "12:00:00.001 -> # a\n12:00:00.002 > 1,2\n12:00:00.003 -> \n[2025-03-01 12:00:00.004] 3,4\n";
+        assert_eq!(lines(text, Separator::Comma, 0), "\n1,2\n\n3,4\n");
         for text in [
             "12:00:00.001 ->",
             "12:00:00,001 -> 1",
             "12:00:00.0011 -> 1",
             "x2:00:00.001 -> 1",
+            "[1,2] 3",
+            "[12:00:00]3",
+            "[12:00:00 3",
+            "[at 12:00:00] 3",
         ] {
             assert_eq!(stamp(text.as_bytes()), 0, "{text}");
         }

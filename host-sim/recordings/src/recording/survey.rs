@@ -119,6 +119,7 @@ impl Survey {
         let option = || hint::current(&places, &records.layout);
         notes.extend(implausible_current(current, options.current_limit, option));
         let (period, rate_hz) = steps.period(name)?;
+        notes.extend(clock::fast(rate_hz));
         let mut wraps = [None; 2];
         for (motor, seen) in seen.iter().enumerate() {
             let jump = steps.largest_jump(1.0 / rate_hz, motor);

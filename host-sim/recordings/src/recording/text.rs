@@ -19,6 +19,8 @@ pub(super) struct Text<R> {
     separator: Separator,
     /// Line of the header; 0 without one.
     header: u64,
+    /// Line of the first row of a text without a header.
+    first_row: u64,
     columns: usize,
     /// Whether one more field may end a row.
     remarks: bool,
@@ -34,6 +36,7 @@ impl<R: BufRead> Text<R> {
                 .from_reader(Lines::new(inner, layout.separator, layout.skip, end)),
             separator: layout.separator,
             header: layout.line,
+            first_row: layout.skip + 1,
             columns,
             remarks: layout.remarks,
         }
@@ -65,7 +68,9 @@ impl<R: BufRead> Text<R> {
         let (fields, columns) = (record.len(), self.columns);
         let may_end =
             fields == columns + 1 && (self.remarks || record[columns].trim_ascii().is_empty());
-        match fields == columns || may_end {
+        // The log ends in the middle of a row.
+        let is_begin = fields < columns && self.is_cut(line);
+        match fields == columns || may_end || is_begin {
             true => Ok(Some(line)),
             false => Err(Failure::Input(self.ragged(line, fields, name))),
         }
@@ -74,16 +79,22 @@ impl<R: BufRead> Text<R> {
     fn ragged(&self, line: u64, fields: usize, name: &str) -> String {
         let columns = self.columns;
         let model = match self.header {
-            0 => "the first row".to_owned(),
+            0 => format!("the first row, in line {},", self.first_row),
             1 => "the first line".to_owned(),
             line => format!("the header in line {line}"),
         };
-        let commas = self.separator == Separator::Comma && fields > columns;
-        let remedy = match commas {
-            true => "; numbers with a decimal comma need another separator than a comma",
-            false => "; remove the line if the log was cut there",
+        let remedy = match (self.header, fields > columns) {
+            (0, _) => "remove the one of both that is cut, or that two rows run together in",
+            (_, false) => "remove the line if the log was cut there",
+            (_, true) => "remove the line if two rows run together there",
         };
-        format!("{name}: line {line}: {fields} fields where {model} has {columns}{remedy}")
+        let commas = match self.separator == Separator::Comma && fields > columns {
+            true => "; numbers with a decimal comma need another separator than a comma",
+            false => "",
+        };
+        format!(
+            "{name}: line {line}: {fields} fields where {model} has {columns}; {remedy}{commas}"
+        )
     }
 }
 

@@ -58,15 +58,30 @@ fn rows_of_other_signals_are_left_out() {
         "{error}"
     );
     let rows = rows("");
-    // Nothing but the time: the row was cut. No time: it is of no instant.
-    for (row, column) in [
-        ("9,,", "counts_large"),
-        ("9,, ", "counts_large"),
-        (",,1", "t"),
-        ("9,,NaN", "counts_large"),
+    // All other signals of the log are in other files, or did not change.
+    for row in ["9,,", "9,, ", "9,,NaN"] {
+        let recording = read(&format!("t,counts_large,imu\n{rows}{row}\n"), "").unwrap();
+        let said = "10 rows without a position are left out, the first in line 3";
+        assert!(recording.notes.iter().any(|note| note == said));
+    }
+    // Without a time a row is of no instant, and a log of the position alone has no other signals.
+    for (header, row, said) in [
+        (
+            "t,counts_large,imu",
+            ",,1",
+            "line 20: column t: '' is not a number; remove the row",
+        ),
+        (
+            "t,counts_large",
+            "9,",
+            "line 20: column counts_large: '' is not a number; remove the row",
+        ),
     ] {
-        let error = read(&format!("t,counts_large,imu\n{rows}{row}\n"), "").unwrap_err();
-        let said = format!("line 20: column {column}: '' is not a number; remove the row");
-        assert!(error.contains(&said), "{error}");
+        let rows = match header.matches(',').count() {
+            2 => rows.clone(),
+            _ => (0..18).map(|k| format!("0.{k:02},{k}\n")).collect(),
+        };
+        let error = read(&format!("{header}\n{rows}{row}\n"), "").unwrap_err();
+        assert!(error.contains(said), "{error}");
     }
 }

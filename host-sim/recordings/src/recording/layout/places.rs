@@ -139,7 +139,8 @@ impl Layout {
                     "{name}: --row-rate {hz}: --column names a column of time; leave one of the two out"
                 )));
             }
-            places.replaced_time = places.get(Column::T);
+            let by_name = || self.stating(Column::T, &places.columns);
+            places.replaced_time = places.get(Column::T).or_else(by_name);
             places.columns.retain(|place| place.column != Column::T);
         }
         places.add_stating(self, options);

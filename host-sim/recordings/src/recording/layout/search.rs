@@ -4,12 +4,13 @@ use std::collections::BTreeSet;
 
 use super::super::formats::Format;
 use super::super::moment::Moment;
-use super::super::options::{Column, ReadOptions};
+use super::super::options::{Column, Mapping, ReadOptions};
 use super::super::separator::{Separator, comment};
 use super::Layout;
-use super::stating::{POSITIONS, TIMES, has};
+use super::words::{POSITIONS, TIMES, has};
 
-/// The first line that names a time and a position, in text or in a comment.
+/// The first line that names a time and a position, in text or in a comment. A column that is called by its number has
+/// no name there.
 pub(super) fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
     let order = [
         Separator::Comma,
@@ -20,12 +21,14 @@ pub(super) fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
     let in_line = |(index, text): (usize, &str)| {
         order.into_iter().find_map(|separator| {
             let layout = Layout::header(separator, separator.split(text), index);
-            let has = |column: Column| match options.mapping(column) {
+            let has = |column: &Column| match options.mapping(*column) {
                 Some(mapping) => layout.names.contains(&mapping.theirs),
                 None => layout.names.iter().any(|name| name == column.name()),
             };
-            let timed = options.row_rate_hz.is_some() || has(Column::T);
-            let own = timed && has(Column::CountsLarge);
+            let mut needed = vec![Column::CountsLarge];
+            needed.extend(options.row_rate_hz.is_none().then_some(Column::T));
+            needed.retain(|column| !options.mapping(*column).is_some_and(Mapping::is_number));
+            let own = !needed.is_empty() && needed.iter().all(has);
             (own || Format::of(&layout.names).is_some()).then_some(layout)
         })
     };
@@ -37,42 +40,65 @@ pub(super) fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
         .or_else(|| comments.into_iter().find_map(in_line))
 }
 
-/// The line before the first line of numbers, also before comments between them; a text without names where
-/// there is no line with as many fields.
+/// The header of a text whose columns no option names: the line before the first line of numbers, also before comments
+/// between them. Else a line above it, or below it, that names a time and a position; or none.
 /// `limit` is what was searched of a text that goes on.
 pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
+    let is_text = |line: &str| is_content(line) && comment(line).is_none();
+    let first = (lines.iter().enumerate()).find_map(|(index, line)| {
+        let (separator, fields) = numbers(line).filter(|_| is_text(line))?;
+        Some((index, separator, fields))
+    });
+    let Some((index, separator, fields)) = first else {
+        return without_numbers(lines, limit);
+    };
+    let row = lines[index];
+    let named = fields - usize::from(end_with(separator, &lines[index..]));
+    let fits = |header: &Layout| [fields, named].contains(&header.names.len());
+    let header = |(at, line): (usize, &&str)| {
+        let text = comment(line).unwrap_or(line);
+        let has_names = text.chars().any(char::is_alphabetic) && numbers(text).is_none();
+        has_names.then(|| Layout::header(separator, separator.split(text), at))
+    };
+    let above = || (lines[..index].iter().enumerate().rev()).filter(|(_, line)| is_content(line));
     // The latest line, and the latest one that is no comment.
-    let mut above: [Option<(usize, &str)>; 2] = [None; 2];
-    for (index, line) in lines.iter().enumerate() {
-        if !is_content(line) {
-            continue;
-        }
-        if comment(line).is_none()
-            && let Some((separator, fields)) = numbers(line)
-        {
-            let named = fields - usize::from(end_with(separator, &lines[index..]));
-            let headers = above.into_iter().flatten().filter_map(|(above, text)| {
-                let header = Layout::header(separator, separator.split(text), above);
-                numbers(text).is_none().then_some(header)
-            });
-            let headers: Vec<_> = headers.collect();
-            let fits = |header: &Layout| [fields, named].contains(&header.names.len());
-            if let Some(header) = headers.iter().find(|header| fits(header)) {
-                return header.clone();
-            }
-            let misfit = headers.iter().find(|header| name_columns(&header.names));
-            return Layout {
-                misfit: misfit.map(|header| (header.line, header.names.len())),
-                ..without_header(separator, named, (index, line))
-            };
-        }
-        let [latest, text] = &mut above;
-        *latest = Some((index, comment(line).unwrap_or(line)));
-        if comment(line).is_none() {
-            *text = Some((index, line));
-        }
+    let latest = [
+        above().next(),
+        above().find(|(_, line)| comment(line).is_none()),
+    ];
+    let latest: Vec<_> = latest.into_iter().flatten().filter_map(header).collect();
+    let nearest = latest.iter().find(|header| fits(header));
+    let is_name = |name: &String| !is_number(name, separator);
+    if let Some(header) = nearest.filter(|header| header.names.iter().all(is_name)) {
+        return header.clone();
     }
-    // No line of numbers: the first line that is no comment is the header, or a row with some text.
+    let is_header = |header: &Layout| fits(header) && name_columns(&header.names);
+    if let Some(header) = above().filter_map(header).find(is_header) {
+        return Layout {
+            skip: index as u64,
+            ..header
+        };
+    }
+    let below = lines.iter().enumerate().skip(index + 1);
+    if let Some(header) = below.filter_map(header).find(is_header) {
+        return Layout {
+            rows_above: Some(index as u64 + 1),
+            ..header
+        };
+    }
+    if let Some(header) = nearest {
+        return header.clone();
+    }
+    let misfit = latest.iter().find(|header| name_columns(&header.names));
+    Layout {
+        misfit: misfit.map(|header| (header.line, header.names.len())),
+        ..without_header(separator, named, (index, row))
+    }
+}
+
+/// The layout of a text without a line of more than one number: the first line that is no comment is the header, or a
+/// row with some text or a single number.
+fn without_numbers(lines: &[&str], limit: Option<String>) -> Layout {
     let is_text = |line: &str| !line.trim().is_empty() && comment(line).is_none();
     let mut text = (lines.iter().enumerate()).filter(|(_, line)| is_text(line));
     let (index, line) = text.next().unwrap_or((0, &""));
@@ -81,10 +107,9 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
         .find(|separator| separator.split(line).len() > 1);
     let separator = separator.unwrap_or(Separator::Comma);
     let fields = separator.split(line).len();
-    if text
-        .next()
-        .is_some_and(|(_, next)| are_rows(separator, line, next))
-    {
+    let next = text.next();
+    let is_row = next.is_some_and(|(_, next)| are_rows(separator, line, next));
+    if is_row || (fields == 1 && is_number(line.trim(), separator)) {
         let mut above = lines[..index].iter().enumerate().rev();
         let header = above.find_map(|(at, line)| {
             let names = separator.split(comment(line)?);
@@ -100,12 +125,11 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
 
 /// Whether one of these names is that of a time, and another one that of a position.
 fn name_columns(names: &[String]) -> bool {
-    let names = names.iter().map(|name| name.to_lowercase());
     let [mut timed, mut placed] = [false; 2];
     for name in names {
-        match has(&name, TIMES) {
+        match has(name, TIMES) {
             true => timed = true,
-            false => placed |= has(&name, POSITIONS),
+            false => placed |= has(name, POSITIONS),
         }
     }
     timed && placed
@@ -211,3 +235,6 @@ fn number(field: &str, separator: Separator) -> Option<f64> {
 pub(in super::super) fn is_number(field: &str, separator: Separator) -> bool {
     number(field, separator).is_some() || Moment::parse(field).is_some()
 }
+
+#[cfg(test)]
+mod tests;

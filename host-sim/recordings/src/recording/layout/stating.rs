@@ -3,27 +3,11 @@
 use super::super::endings::Ending;
 use super::super::hint;
 use super::super::options::Column;
+use super::words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 use super::{Layout, Place, labview};
-
-/// Parts of the names of positions, and of times.
-pub(in super::super) const POSITIONS: &[&str] = &["counts", "enc", "pos", "angle", "theta"];
-pub(in super::super) const TIMES: &[&str] = &["time", "stamp"];
-
-/// Parts of the names of what is derived from a position.
-const DERIVED: &[&str] = &["vel", "speed", "omega", "acc"];
-
-/// Parts of the names of positions that are no measured position of the shaft, or of another angle.
-const INDIRECT: &[&str] = &[
-    "err", "target", "cmd", "command", "ref", "set", "des", "goal", "elec", "delta", "diff", "rate",
-];
 
 /// The end of a name that counts anything: samples, errors, or an encoder's lines.
 const COUNT: &str = "count";
-
-/// Whether a part of `name` is one of the `words`.
-pub(in super::super) fn has(name: &str, words: &[&str]) -> bool {
-    words.iter().any(|word| name.contains(word))
-}
 
 impl Layout {
     /// The column of the header that is `column` by its name and none of those that are `known`; `None` if
@@ -39,15 +23,16 @@ impl Layout {
         };
         let could_be = |place: usize, name: &str| {
             let lower = name.trim().to_lowercase();
-            let is_named = has(&lower, words) || quantity.unit(&lower).is_some();
+            let is_named = has(name, words) || quantity.unit(&lower).is_some();
             match (column, self.ending(quantity, place)) {
                 (_, Ending::Unknown(_)) => false,
+                (Column::T, _) if is_duration(name) => false,
                 (Column::T, Ending::Unit(_)) if lower.starts_with('t') => {
                     is_named || !lower[1..].starts_with(char::is_alphanumeric)
                 }
                 (Column::T, Ending::Unit(_)) if name == labview::X_VALUE => true,
                 (Column::T, _) => is_named,
-                _ => !has(&lower, DERIVED) && (is_named || lower.ends_with(COUNT)),
+                _ => !is_derived(name) && (is_named || lower.ends_with(COUNT)),
             }
         };
         let names = self.names.iter().enumerate();
@@ -56,11 +41,8 @@ impl Layout {
         let (place, name) = like.next()?;
         let is_only = like.next().is_none() && self.has_header() && hint::barred(self).is_none();
         let lower = name.trim().to_lowercase();
-        let is_sure = has(&lower, words) || !lower.ends_with(COUNT);
-        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
-        // An electrical angle: theta_e.
-        let is_indirect = has(&lower, INDIRECT) || parts.any(|part| part == "e");
-        let is_sure = is_sure && (column == Column::T || !is_indirect);
+        let is_sure = has(name, words) || !lower.ends_with(COUNT);
+        let is_sure = is_sure && (column == Column::T || !is_indirect(name));
         match self.ending(quantity, place) {
             Ending::Unit(unit) if is_only && is_sure => Some(Place {
                 column,
@@ -104,6 +86,14 @@ mod tests {
             (
                 "time_us,encoder_counts,encoder_velocity,encoder_acc_rad_s2,pos_mm",
                 "t from 'time_us' (us), counts_large from 'encoder_counts' (counts)",
+            ),
+            (
+                "loop_time_us,time_us,frequency,encoder_counts",
+                "t from 'time_us' (us), counts_large from 'encoder_counts' (counts)",
+            ),
+            (
+                "time_ms,theta_dot_rad,theta_rad,dtheta_rad",
+                "t from 'time_ms' (ms), counts_large from 'theta_rad' (rad with 4096 counts/rev)",
             ),
             (
                 "t_ms,t_motor_C,ticks",
@@ -156,6 +146,11 @@ mod tests {
             "time_ms,theta_e_rad",
             "time_ms,delta_counts",
             "time_ms,angle_rate_deg",
+            "time_ms,theta_dot_rad",
+            "time_ms,theta_d_rad",
+            "time_ms,angle_sp_deg",
+            "time_ms,pos_demand_deg",
+            "dt_ms,counts",
         ] {
             let error = read(&rows(names), "").unwrap_err();
             assert!(error.contains("r.csv: line 1: no column "), "{error}");

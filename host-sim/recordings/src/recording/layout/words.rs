@@ -1,0 +1,151 @@
+//! Words in the names of columns.
+
+/// Parts of the names of positions, and of times.
+pub(in super::super) const POSITIONS: &[&str] =
+    &["counts", "encoder", "enc", "pos", "angle", "theta"];
+pub(in super::super) const TIMES: &[&str] = &["time", "stamp"];
+
+/// Parts of the names of what is derived from a position.
+const DERIVED: &[&str] = &["vel", "speed", "omega", "acc", "dot"];
+
+/// Parts of the names of positions that are no measured position of the shaft, or of another angle.
+const INDIRECT: &[&str] = &[
+    "err", "target", "cmd", "command", "demand", "request", "ref", "set", "sp", "des", "goal",
+    "elec", "delta", "diff", "rate", // Electrical and desired: theta_e, theta_d.
+    "e", "d",
+];
+
+/// Parts of the names of durations, which are no time of a row.
+const DURATIONS: &[&str] = &[
+    "dt", "loop", "delta", "diff", "duration", "period", "latency",
+];
+
+/// Whether a part of `name` is one of the `words`: a word of one or two letters is a whole part, one of three begins or
+/// ends a part, and a longer one is anywhere. A sequence is no encoder.
+pub(in super::super) fn has(name: &str, words: &[&str]) -> bool {
+    let lower = name.to_lowercase();
+    let parts = parts(name);
+    let is_in = |word: &str| match word.len() {
+        0..=2 => parts.iter().any(|part| part == word),
+        3 => parts
+            .iter()
+            .any(|part| part.starts_with(word) || part.ends_with(word)),
+        _ => lower.contains(word),
+    };
+    words.iter().any(|word| is_in(word))
+}
+
+/// The parts of a name between other characters, at capitals and at digits, in lower case.
+fn parts(name: &str) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    let mut before = ' ';
+    for c in name.chars() {
+        let begins =
+            (c.is_uppercase() && before.is_lowercase()) || c.is_numeric() != before.is_numeric();
+        if !c.is_alphanumeric() || begins {
+            parts.push(String::new());
+        }
+        if let Some(part) = parts.last_mut().filter(|_| c.is_alphanumeric()) {
+            part.extend(c.to_lowercase());
+        }
+        before = c;
+    }
+    parts
+}
+
+/// Whether `name` is that of a rate of a position: omega, theta_dot, dtheta.
+pub(in super::super) fn is_derived(name: &str) -> bool {
+    let differential = |part: String| {
+        let position = part.strip_prefix('d');
+        position.is_some_and(|position| POSITIONS.contains(&position))
+    };
+    has(name, DERIVED) || parts(name).into_iter().any(differential)
+}
+
+/// Whether `name` is that of a position that is not measured at the shaft: a target, an error, a difference, an
+/// electrical angle.
+pub(in super::super) fn is_indirect(name: &str) -> bool {
+    let desired = |part: String| {
+        let position = part.strip_suffix('d');
+        position.is_some_and(|position| POSITIONS.contains(&position))
+    };
+    has(name, INDIRECT) || parts(name).into_iter().any(desired)
+}
+
+/// Whether `name` is that of a duration.
+pub(in super::super) fn is_duration(name: &str) -> bool {
+    has(name, DURATIONS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_words_are_whole_parts_of_a_name() {
+        for name in [
+            "encoder",
+            "Encoder 1",
+            "motorEnc",
+            "enc1_raw",
+            "motorencoder",
+            "jointpos",
+            "PosLeft",
+            "actual_position",
+            "wheelangle",
+        ] {
+            assert!(has(name, POSITIONS), "{name}");
+        }
+        for name in [
+            "sequence",
+            "frequency",
+            "reference",
+            "silence",
+            "latency_s",
+            "purpose",
+        ] {
+            assert!(!has(name, POSITIONS), "{name}");
+        }
+        assert!(has("time_ms", &["ms"]) && has("T(ms)", &["ms"]) && has("iqRef", &["iq"]));
+        assert!(!has("rms_A", &["ms"]));
+    }
+
+    #[test]
+    fn rates_targets_and_durations_are_known_by_their_names() {
+        for name in [
+            "theta_dot_rad",
+            "dtheta",
+            "angleDot",
+            "dpos_deg",
+            "speed",
+            "accZ",
+        ] {
+            assert!(is_derived(name), "{name}");
+        }
+        for name in [
+            "theta_d_rad",
+            "posd",
+            "theta_e",
+            "angle_sp",
+            "pos_demand",
+            "refPos",
+            "posErr",
+            "elecAngle",
+        ] {
+            assert!(is_indirect(name) && !is_derived(name), "{name}");
+        }
+        for name in [
+            "theta",
+            "encoded_pos",
+            "pos_rad",
+            "angle_deg",
+            "EncoderLeft",
+        ] {
+            assert!(!is_indirect(name) && !is_derived(name), "{name}");
+        }
+        for name in ["dt_us", "loop_time_us", "latency_ms", "deltaTime"] {
+            assert!(is_duration(name), "{name}");
+        }
+        assert!(!is_duration("time_ms") && !is_duration("timestamp"));
+    }
+}
