@@ -24,7 +24,7 @@ pub fn milliseconds() -> Result<String, String> {
         ..Setup::default()
     };
     // The edge clock is not read.
-    kind.c(&setup, Hertz(1e6), &Vec::new())
+    kind.c(&setup, Hertz(1e6), &Vec::new(), None)
         .map_err(|failure| failure.to_string())
 }
 

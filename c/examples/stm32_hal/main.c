@@ -15,9 +15,9 @@
 extern TIM_HandleTypeDef htim3;
 extern TIM_HandleTypeDef htim6;
 
-/* Velocity and its standard deviation at the latest tick, rad/s. */
+/* Velocity at the latest tick, rad/s, and its variance, (counts per tick)^2. */
 volatile float velocity_rad_per_s;
-volatile float variance_counts;
+volatile float variance;
 
 static limpid_imm_state_t state;
 static uint32_t count;
@@ -45,6 +45,6 @@ void HAL_TIM_PeriodElapsedCallback(TIM_HandleTypeDef *timer)
         limpid_sample_t sample = measured();
         float v = limpid_imm_update(&limpid_imm_parameters, &state, &sample);
         velocity_rad_per_s = LIMPID_RAD_PER_S(v, LIMPID_IMM_COUNTS_PER_REV, LIMPID_IMM_RATE_HZ);
-        variance_counts = limpid_imm_variance(&limpid_imm_parameters, &state);
+        variance = limpid_imm_variance(&limpid_imm_parameters, &state);
     }
 }

@@ -58,6 +58,10 @@ struct Design {
     /// For C: clock that stamps edges, Hz
     #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c")]
     edge_clock: f64,
+    /// For C: name of the constant; the counts per revolution and the rate are NAME_COUNTS_PER_REV and
+    /// NAME_RATE_HZ in capitals [default: limpid_ESTIMATOR_parameters, LIMPID_ESTIMATOR_RATE_HZ]
+    #[arg(long, value_name = "NAME", requires = "c", value_parser = identifier)]
+    constant: Option<String>,
     /// For C: write the header to FILE; - is standard output
     #[arg(long, value_name = "FILE.h", default_value = "-", requires = "c")]
     out: PathBuf,
@@ -79,6 +83,7 @@ fn header(options: &Export) -> Result<(), Failure> {
     let Design {
         rate,
         edge_clock,
+        constant,
         out,
     } = &options.design;
     let rate = in_range("--rate", *rate, EVERY_HZ, "Hz")?;
@@ -97,7 +102,17 @@ fn header(options: &Export) -> Result<(), Failure> {
         .parameters
         .load()?
         .values(kind, &setup, PlantKind::Friction);
-    write_whole(out, kind.c(&setup, Hertz(*edge_clock), &values)?.as_bytes())
+    let header = kind.c(&setup, Hertz(*edge_clock), &values, constant.as_deref())?;
+    write_whole(out, header.as_bytes())
+}
+
+/// A name in C.
+fn identifier(text: &str) -> Result<String, String> {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    match text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(is_part) {
+        true => Ok(text.to_owned()),
+        false => Err("a name in C begins with a letter, and has letters, digits and _".to_owned()),
+    }
 }
 
 fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Failure> {

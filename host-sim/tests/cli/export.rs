@@ -80,3 +80,21 @@ fn options_of_a_recording_are_refused_without_one() {
     ];
     assert!(folder.good(&counts).contains("500 counts per revolution"));
 }
+
+#[test]
+fn constant_for_c_has_the_name_that_is_asked_for() {
+    let folder = folder();
+    let said = folder.good("export --c --estimator pll --constant wheel_2");
+    assert!(
+        said.contains("static const limpid_pll_t wheel_2 = {{"),
+        "{said}"
+    );
+    assert!(said.contains("#define WHEEL_2_RATE_HZ 1000.0"), "{said}");
+    for name in ["2wheel", "my-wheel", "_wheel", ""] {
+        let error = folder.refused(&["export", "--c", "--estimator", "pll", "--constant", name]);
+        assert!(
+            error.contains("a name in C begins with a letter"),
+            "{error}"
+        );
+    }
+}

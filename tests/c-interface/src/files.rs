@@ -26,7 +26,7 @@ pub fn parameters(cases: &[&Case]) -> String {
     let (mut all, mut varying) = (String::new(), String::new());
     for case in distinct(cases) {
         let kind = Kind::named(case.c.row.name).expect("a row");
-        let header = kind.c_of(&case.c, &setup(case), CLOCK, &(case.values)());
+        let header = kind.c_of(&case.c, &setup(case), CLOCK, &(case.values)(), None);
         text += &header.expect("the bench image has it");
         let c = case.c;
         let function = |reported: bool, what: &str| match reported {

@@ -58,12 +58,18 @@ macro_rules! initialisers {
 estimator_catalogue::estimators!(initialisers);
 
 impl Kind {
-    /// A C header: the parameters of the estimator as a constant, with what they are made for. A row with
-    /// several lengths has the shortest that is sufficient.
+    /// A C header: the parameters of the estimator as a `constant`, or as `limpid_NAME_parameters`, with what they are
+    /// made for. A row with several lengths has the shortest that is sufficient.
     ///
     /// # Errors
     /// [`Failure::Input`] that names the parameter or the reason of a refused design.
-    pub fn c(&self, setup: &Setup, edge_clock: Hertz, values: &Values) -> Result<String, Failure> {
+    pub fn c(
+        &self,
+        setup: &Setup,
+        edge_clock: Hertz,
+        values: &Values,
+        constant: Option<&str>,
+    ) -> Result<String, Failure> {
         for (parameter, &value) in self.parameters.iter().zip(values) {
             check(parameter, self.name, value)?;
             if parameter.name == "literal" && value != 0.0 {
@@ -78,7 +84,7 @@ impl Kind {
         let mut lengths = Vec::new();
         let mut why = None;
         for c in CType::of(self.row) {
-            match self.c_of(&c, setup, edge_clock, values) {
+            match self.c_of(&c, setup, edge_clock, values, constant) {
                 Ok(header) => return Ok(header),
                 Err(error) => why = Some(error),
             }
@@ -87,13 +93,31 @@ impl Kind {
         let why = why.map_or_else(String::new, |error| error.to_string());
         let lengths = match &lengths[..] {
             [] => String::new(),
-            some => format!("; N in limpid.h is {}", some.join(" or ")),
+            some => format!(
+                "; N in limpid.h is {}{}",
+                some.join(" or "),
+                self.longest(values, some[some.len() - 1].as_str())
+            ),
         };
         Err(Failure::Input(format!(
             "{} at {} Hz: {why}{lengths}",
             self.name,
             decimal(setup.rate.0)
         )))
+    }
+
+    /// The option for the `most` intervals of limpid.h, where these are too few for `values`.
+    fn longest(&self, values: &Values, most: &str) -> String {
+        let window = self.parameters.iter().zip(values);
+        let mut window = window.filter(|(parameter, _)| parameter.name == "n");
+        let option = window.next().map(|(_, n)| {
+            format!(
+                ", and n is {}: write --set {}.n={most} or a smaller one",
+                decimal(*n),
+                self.name
+            )
+        });
+        option.unwrap_or_default()
     }
 
     /// As [`Kind::c`] for one type of the row, without a check of the ranges of the values.
@@ -106,12 +130,13 @@ impl Kind {
         setup: &Setup,
         edge_clock: Hertz,
         values: &Values,
+        constant: Option<&str>,
     ) -> Result<String, DesignError> {
         let index = Self::all().iter().position(|kind| kind.name == self.name);
         let design = DESIGNS[index.unwrap_or_default()];
         let designed =
             design(setup, edge_clock, values, c.capacity).unwrap_or(Err(DesignError::TABLE));
-        Ok(self.header(c, &designed?, setup, edge_clock, values))
+        Ok(self.header(c, &designed?, setup, edge_clock, values, constant))
     }
 
     fn header(
@@ -121,6 +146,7 @@ impl Kind {
         setup: &Setup,
         edge_clock: Hertz,
         values: &Values,
+        constant: Option<&str>,
     ) -> String {
         let motor = setup.stages.coupled_motor();
         let mut made_for = vec![
@@ -147,23 +173,37 @@ impl Kind {
             );
             made_for.push(text.trim_end().to_owned());
         }
-        let upper = c.to_string().to_uppercase();
+        let usual = format!("limpid_{c}");
+        let (constant, prefix) = match constant {
+            Some(constant) => (constant.to_owned(), constant),
+            None => (format!("{usual}_parameters"), usual.as_str()),
+        };
+        let prefix = prefix.to_uppercase();
+        let guard = format!("{}_H", constant.to_uppercase());
+        let content = format!(
+            "#define {prefix}_COUNTS_PER_REV {}u\n\
+             #define {prefix}_RATE_HZ {:?}\n\n\
+             static const {usual}_t {constant} = {{{{\n{}}}}};\n",
+            motor.motor.counts_per_rev,
+            setup.rate.0,
+            words(bytes, *alignment),
+        );
+        let checksum = crc32fast::hash(content.as_bytes());
+        // A guard alone would pass over the parameters of a second encoder.
         format!(
             "/* {}: {}.\n   For {}.\n   Written by host-sim {}. */\n\
-             #ifndef LIMPID_{upper}_PARAMETERS_H\n\
-             #define LIMPID_{upper}_PARAMETERS_H\n\n\
+             #if defined({guard}) && {guard} != {checksum:#010x}u\n\
+             #error \"two headers define {constant}: export one of them with --constant NAME\"\n\
+             #endif\n\
+             #ifndef {guard}\n\
+             #define {guard} {checksum:#010x}u\n\n\
              #include \"limpid.h\"\n\n\
-             #define LIMPID_{upper}_COUNTS_PER_REV {}u\n\
-             #define LIMPID_{upper}_RATE_HZ {:?}\n\n\
-             static const limpid_{c}_t limpid_{c}_parameters = {{{{\n{}}}}};\n\n\
+             {content}\n\
              #endif\n",
             self.name,
             self.summary,
             made_for.join(",\n   "),
             env!("CARGO_PKG_VERSION"),
-            motor.motor.counts_per_rev,
-            setup.rate.0,
-            words(bytes, *alignment),
         )
     }
 }
@@ -208,7 +248,7 @@ mod tests {
             parameters.set(change).unwrap();
         }
         let values = parameters.values(kind, &setup, PlantKind::Friction);
-        let header = kind.c(&setup, CLOCK, &values);
+        let header = kind.c(&setup, CLOCK, &values, None);
         header.map_err(|error| error.to_string())
     }
 
@@ -276,5 +316,9 @@ mod tests {
         );
         let error = header("foaw-end-fit", "foaw-end-fit.n=128").unwrap_err();
         assert!(error.contains("; N in limpid.h is "), "{error}");
+        let said = "intervals); N in limpid.h is 64, and n is 128: write --set robust-exact.n=64 or a smaller one";
+        let error = header("robust-exact", "").unwrap_err();
+        assert!(error.ends_with(said), "{error}");
+        assert!(header("robust-exact", "robust-exact.n=64").is_ok());
     }
 }
