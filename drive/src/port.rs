@@ -1,14 +1,18 @@
 //! Ports: a serial port, a TCP connection to an emulated board or a debug server, or a pipe to another thread.
 
 use std::collections::VecDeque;
+#[cfg(unix)]
+use std::fs::{File, TryLockError};
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs as _};
+#[cfg(unix)]
+use std::os::fd::AsFd as _;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use drivers::link::BAUD;
-use serial2::SerialPort;
+use serial2::{IntoSettings as _, KeepSettings, SerialPort};
 use terminal::failure::Failure;
 
 /// Longest time of one read. The tool looks at the clock and at interrupts in between.
@@ -76,24 +80,13 @@ impl Port {
             Some(address) => connect(address).map(Channel::Tcp),
             None => open_serial(&name).map(Channel::Serial),
         };
-        let remedy = match (&opened, name.starts_with(TCP)) {
-            (Ok(_), _) => "",
-            (Err(_), true) => "start the board's server first, or give tcp:HOST:PORT",
-            (Err(error), false) if error.kind() == ErrorKind::PermissionDenied => {
-                "add the user to the group of the port (dialout) and log in again"
-            }
-            (Err(_), false) if is_address(&name) => "for a TCP port, write tcp: before the address",
-            (Err(_), false) => "cargo drive list shows the ports",
-        };
         match opened {
             Ok(channel) => Ok(Self {
                 name,
                 channel,
                 begin: Vec::new(),
             }),
-            Err(error) => Err(Failure::Input(format!(
-                "{name}: cannot open: {error}; {remedy}"
-            ))),
+            Err(error) => Err(Failure::Input(unopened(&name, &error))),
         }
     }
 
@@ -165,7 +158,7 @@ impl Port {
     pub fn lost(&self, error: &io::Error) -> String {
         let name = &self.name;
         match self.is_taken() {
-            true => format!("{name}: another program has this port; end it first"),
+            true => taken(name),
             false => format!(
                 "{name}: connection lost: {error}; check cable and power, then run the command again"
             ),
@@ -224,6 +217,25 @@ fn only(ports: &[PathBuf]) -> Result<String, Failure> {
     }
 }
 
+/// The message about a port that another program has.
+fn taken(name: &str) -> String {
+    format!("{name}: another program has this port; end it first")
+}
+
+/// The message about a port that cannot be opened.
+fn unopened(name: &str, error: &io::Error) -> String {
+    let remedy = match error.kind() {
+        ErrorKind::ResourceBusy => return taken(name),
+        _ if name.starts_with(TCP) => "start the board's server first, or give tcp:HOST:PORT",
+        ErrorKind::PermissionDenied => {
+            "add the user to the group of the port (dialout) and log in again"
+        }
+        _ if is_address(name) => "for a TCP port, write tcp: before the address",
+        _ => "cargo drive list shows the ports",
+    };
+    format!("{name}: cannot open: {error}; {remedy}")
+}
+
 /// Whether a name looks like `HOST:PORT`.
 fn is_address(name: &str) -> bool {
     let number = name.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
@@ -240,12 +252,32 @@ fn is_silence(error: &io::Error) -> bool {
 }
 
 fn open_serial(name: &str) -> io::Result<SerialPort> {
-    let mut port = SerialPort::open(name, BAUD)?;
+    // The settings and the input of a port that another program has stay as they are.
+    let mut port = SerialPort::open(name, KeepSettings)?;
+    #[cfg(unix)]
+    lock(&port)?;
+    let mut settings = port.get_configuration()?;
+    BAUD.apply_to_settings(&mut settings)?;
+    port.set_configuration(&settings)?;
     port.set_read_timeout(READ)?;
     port.set_write_timeout(WRITE)?;
     // What the board sent before has no meaning for this connection.
     port.discard_input_buffer()?;
     Ok(port)
+}
+
+/// Locks a serial port until it is closed. Unix gives a port to several programs at once, Windows to one.
+///
+/// # Errors
+/// [`ErrorKind::ResourceBusy`] if another program has the lock.
+#[cfg(unix)]
+fn lock(port: &SerialPort) -> io::Result<()> {
+    // The copy shares the lock of the port, so that its end leaves the port locked.
+    let copy = File::from(port.as_fd().try_clone_to_owned()?);
+    copy.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => ErrorKind::ResourceBusy.into(),
+        TryLockError::Error(error) => error,
+    })
 }
 
 fn connect(address: &str) -> io::Result<TcpStream> {
@@ -276,6 +308,26 @@ mod tests {
         for name in ["/dev/ttyACM0", "COM3", "tcp", "usb:x"] {
             assert!(!is_address(name), "{name}");
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn serial_port_has_one_program_at_a_time() {
+        use std::os::fd::AsRawFd as _;
+
+        let (_board, device) = SerialPort::pair().unwrap();
+        let link = format!("/proc/self/fd/{}", device.as_raw_fd());
+        let name = std::fs::read_link(link).unwrap();
+        let name = name.to_str().unwrap();
+        let first = Port::open(Some(name)).unwrap();
+        let Err(error) = Port::open(Some(name)) else {
+            panic!("two programs");
+        };
+        assert_eq!(error.status(), 2);
+        let said = format!("{name}: another program has this port; end it first");
+        assert_eq!(error.to_string(), said);
+        drop(first);
+        assert!(Port::open(Some(name)).is_ok());
     }
 
     #[test]
