@@ -26,7 +26,11 @@ pub(crate) fn lines(seen: &Seen) -> Vec<Line> {
 
 /// Whether the commanded currents flow.
 fn flowing(seen: &Seen, channel: &Channel) -> Result<String, String> {
-    let fit = Fit::of(seen, channel)?;
+    judged(Fit::of(seen, channel)?, channel)
+}
+
+/// Whether a line is that of an amplifier which calibration can correct.
+fn judged(fit: Fit, channel: &Channel) -> Result<String, String> {
     let found = fit.text();
     let gain = channel.gain.facts();
     let most = LARGEST_OFFSET * channel.limit;
@@ -275,6 +279,38 @@ mod tests {
             "{error}"
         );
         assert!(Fit::of(&weak, &CHANNELS[1]).is_ok());
+    }
+
+    #[test]
+    fn directions_are_those_of_commands_that_are_not_zero() {
+        let commands = [0.3, 0.0, -0.1, 0.2, 0.0, 0.0, 1e-9];
+        let pairs = commands.map(|command| [command, -command]);
+        assert_eq!(directions(&pairs), [3, 1]);
+        assert_eq!(directions(&[]), [0, 0]);
+    }
+
+    /// The bounds themselves are allowed.
+    #[test]
+    fn slope_and_offset_at_a_bound_are_allowed() {
+        let channel = &CHANNELS[0];
+        let gain = channel.gain.facts();
+        let fit = |offset, slope| Fit {
+            offset,
+            slope,
+            residual: 0.0,
+            pairs: 100,
+        };
+        let [least, most] = [gain.least, gain.most].map(f64::from);
+        let offset = LARGEST_OFFSET * channel.limit;
+        for (at, beyond) in [
+            (fit(0.0, least), fit(0.0, least.next_down())),
+            (fit(0.0, most), fit(0.0, most.next_up())),
+            (fit(offset, 1.0), fit(offset.next_up(), 1.0)),
+            (fit(-offset, 1.0), fit((-offset).next_down(), 1.0)),
+        ] {
+            assert!(judged(at, channel).is_ok(), "{at:?}");
+            assert!(judged(beyond, channel).is_err(), "{beyond:?}");
+        }
     }
 
     #[test]
