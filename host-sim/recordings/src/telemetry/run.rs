@@ -28,7 +28,8 @@ impl Telemetry {
     /// The runs, in order.
     ///
     /// A run ends at a boot line, or where sequence number and tick restart. A frame whose numbers
-    /// fit neither its predecessor nor its successor is damaged and left out.
+    /// fit neither its predecessor nor its successor is damaged and left out. The first frame of the firmware
+    /// begins a run even if no frame follows it: a session ends there.
     #[must_use]
     pub fn runs(&self) -> Vec<Run<'_>> {
         let decimation = self.decimation();
@@ -48,7 +49,8 @@ impl Telemetry {
                 let last = run.frames.last().map_or(frame, |(_, last)| last);
                 let begins =
                     |next| !follows(last, next, decimation) && follows(frame, next, decimation);
-                if !next.is_some_and(begins) {
+                let goes_on = next.is_some_and(|next| follows(last, next, decimation));
+                if !next.is_some_and(begins) && (goes_on || !is_first(frame, decimation)) {
                     run.gaps.strays += 1;
                     continue;
                 }
@@ -107,6 +109,11 @@ fn steps(a: &Frame, b: &Frame) -> Option<[u32; 2]> {
     let by = [b.tick.wrapping_sub(a.tick), b.seq.wrapping_sub(a.seq)];
     let forward = by.iter().all(|by| (1..=i32::MAX as u32).contains(by));
     forward.then_some(by)
+}
+
+/// Whether a frame has the numbers of the first one after a reset.
+fn is_first(frame: &Frame, decimation: u32) -> bool {
+    frame.seq == 0 && frame.tick <= decimation
 }
 
 /// Whether `b` can follow `a`: the number of periods is that of the frames, except that a wrap of
@@ -185,6 +192,17 @@ mod tests {
             [0, 1, 2].map(|n| runs[n].rate_hz()),
             [None, None, Some(1e4)]
         );
+    }
+
+    #[test]
+    fn first_frame_after_a_reset_is_a_run_although_the_stream_ends_there() {
+        let telemetry = frames(&[[5, 50], [6, 60], [7, 70], [0, 9]]);
+        let runs = telemetry.runs();
+        assert_eq!([0, 1].map(|n| ticks(&runs[n]).len()), [3, 1]);
+        assert!(runs.iter().all(|run| run.gaps == Gaps::default()));
+        let telemetry = frames(&[[5, 50], [6, 60], [7, 70], [3, 9]]);
+        let runs = telemetry.runs();
+        assert_eq!((runs.len(), runs[0].gaps.strays), (1, 1));
     }
 
     #[test]
