@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use drivers::link::{Hello, Message};
-use recordings::record::{choose, csv, report};
-use recordings::telemetry::Telemetry;
+use recordings::record::{csv, write_longest};
+use recordings::telemetry::{Run, Telemetry};
 use terminal::failure::Failure;
-use terminal::output::{check_place, note, write_whole};
+use terminal::output::check_place;
 
 /// Telemetry that becomes a file at the end of a session.
 pub(crate) struct Recorder {
@@ -43,29 +43,10 @@ impl Recorder {
     /// Writes the file, the longest run if the firmware started again.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there are fewer than two frames, or the file cannot be written;
-    /// [`Failure::Check`] after a start of the firmware, as the other runs are lost.
+    /// Those of [`write_longest`].
     pub(crate) fn write(self) -> Result<(), Failure> {
-        let name = self.out.display();
-        let runs = self.telemetry.runs();
-        if runs.is_empty() {
-            return Err(Failure::Input(format!(
-                "{name}: not written: no telemetry frame came; record for longer"
-            )));
-        }
-        let run = choose(&runs, None)
-            .map_err(|error| Failure::Input(format!("{name}: not written: {error}")))?;
-        write_whole(&self.out, csv(run, self.rate_hz, |_| None).as_bytes())?;
-        for line in report(&self.telemetry, &runs, run, "") {
-            note(format_args!("{name}: {line}"));
-        }
-        match runs.len() {
-            1 => Ok(()),
-            starts => Err(Failure::Check(format!(
-                "{name}: the firmware started {starts} times, and only the longest run is in the file; find the \
-                 cause of the reset, then record again"
-            ))),
-        }
+        let text = |run: &Run| csv(run, self.rate_hz, |_| None);
+        write_longest(&self.telemetry, &self.out, text)
     }
 }
 

@@ -39,8 +39,8 @@ const IMAGE: &str = concat!(
 /// Runs the firmware image on an emulated board in closed loop with the simulated device. Prints the
 /// log of the image, the cost of its control task, and the parasitic force on the hand.
 ///
-/// Exit status: 0; 1 if the control task never ran or the image used hardware that the emulator does
-/// not model; 2 if the input cannot be used.
+/// Exit status: 0; 1 if the control task never ran, the image used hardware that the emulator does not
+/// model, or the firmware started again while it was recorded; 2 if the input cannot be used.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo board",
@@ -263,9 +263,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         true => note(text.trim_end()),
         false => print_bytes(text.as_bytes())?,
     }
-    if let Some(path) = &arguments.record {
-        write_whole(path, outcome.csv()?.as_bytes())?;
-    }
+    let recorded = arguments.record.as_deref();
+    let recorded = recorded.map_or(Ok(()), |path| outcome.record(path));
     if let Some(path) = &arguments.rtt {
         write_whole(path, &outcome.rtt)?;
     }
@@ -275,7 +274,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     if outcome.ticks.is_empty() {
         return Err(Failure::Check("the control task never ran".to_owned()));
     }
-    outcome.check()
+    outcome.check()?;
+    recorded
 }
 
 /// Serves the serial port to clients, which command the board.

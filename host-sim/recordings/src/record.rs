@@ -1,11 +1,15 @@
 //! Conversion of telemetry to a recording.
 
+mod longest;
+
 use std::fmt::Write as _;
 
 use crate::recording::MEASURED;
 use crate::telemetry::{COLUMNS, Column, Frame, LearnedLine, MeasuredLine, Run, Telemetry};
 use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
+
+pub use longest::write_longest;
 
 /// The columns of the learned parameters.
 const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant";
