@@ -17,6 +17,18 @@ fn numbered(name: &str, number: u8) -> String {
     format!("{} ({number})", name.replace('-', " "))
 }
 
+/// Why a run of this length has no parasitic force.
+fn no_force(seconds: f64, was_reset: bool) -> String {
+    if seconds <= SETTLED_S {
+        format!("the run ends before the settling time of {SETTLED_S} s; give a longer --seconds")
+    } else if was_reset {
+        // The ticks of the frames begin again.
+        "the firmware was reset".to_owned()
+    } else {
+        "no frame came after the start".to_owned()
+    }
+}
+
 /// The summary of a run of `scene`, one line per quantity.
 pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> String {
     let mut out = String::new();
@@ -126,7 +138,10 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
         ),
         None => line(
             "parasitic force",
-            "unknown, because no frame came after the start".to_owned(),
+            format!(
+                "unknown, because {}",
+                no_force(setup.seconds, !outcome.restarts.is_empty())
+            ),
         ),
     }
     out
@@ -136,6 +151,15 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
 mod tests {
     use super::*;
     use haptic_control::{Mode, Stop};
+
+    #[test]
+    fn missing_force_has_its_reason() {
+        let short = "the run ends before the settling time of 0.4 s; give a longer --seconds";
+        assert_eq!(no_force(0.35, false), short);
+        assert_eq!(no_force(0.4, true), short);
+        assert_eq!(no_force(1.0, true), "the firmware was reset");
+        assert_eq!(no_force(1.0, false), "no frame came after the start");
+    }
 
     #[test]
     fn codes_of_telemetry_have_names() {
