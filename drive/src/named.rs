@@ -88,18 +88,27 @@ pub(crate) fn explained(reason: &str, scene: Option<SceneKind>) -> String {
     }
 }
 
-/// The scenes with the names of their parameters, one line each.
+/// The scenes with parameters that last, one line each with their names.
 pub(crate) fn parameters() -> String {
     let tuned = SceneKind::ALL.into_iter().filter(|scene| {
         // The set-point of the torque is no parameter that lasts.
         *scene != SceneKind::Torque && !scene.facts().parameters.is_empty()
     });
-    let line = |scene: SceneKind| {
-        let names = scene.facts().parameters.iter().map(|it| it.name);
-        let names: Vec<_> = names.collect();
-        format!("  {:<15}{}\n", scene.name(), names.join(", "))
-    };
     tuned.map(line).collect()
+}
+
+/// All scenes, one line each with the names of its parameters.
+#[must_use]
+pub fn scenes() -> String {
+    SceneKind::ALL.into_iter().map(line).collect()
+}
+
+/// A line on a scene with the names of its parameters.
+fn line(scene: SceneKind) -> String {
+    let names = scene.facts().parameters.iter().map(|it| it.name);
+    let names: Vec<_> = names.collect();
+    let line = format!("  {:<15}{}", scene.name(), names.join(", "));
+    format!("{}\n", line.trim_end())
 }
 
 /// A value for a parameter of a scene.

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Parser;
+use drive::named::scenes;
 use drive::port::TCP;
 use drivers::Settings;
 use experiments::closed_loop::Hand;
@@ -50,11 +51,11 @@ const IMAGE: &str = concat!(
     after_help = after_help()
 )]
 struct Arguments {
-    /// Scene to select
+    /// Scene to select, of the list below
     #[arg(long, value_name = "NAME", default_value = "free-air", value_parser = scene::named)]
     scene: SceneKind,
-    /// Set a parameter of the scene at S seconds, for example stiffness=0.2@1.5, or the set-point of
-    /// scene torque: torque=0.01@1; repeatable
+    /// Set a parameter of the scene, of the list below, at S seconds, for example stiffness=0.2@1.5, or the
+    /// set-point of scene torque: torque=0.01@1; repeatable
     #[arg(long, value_name = "NAME=VALUE@S", value_parser = timed::<String>)]
     tune: Vec<(f64, String)>,
     /// Select the large motor's estimator by its number, 0 to 255, at S seconds, for example 1@1.5;
@@ -138,9 +139,9 @@ impl Arguments {
     }
 }
 
-/// The list of faults, the build command, and examples.
+/// The lists of scenes and faults, the build command, and examples.
 fn after_help() -> String {
-    let mut text = "Faults:\n".to_owned();
+    let mut text = format!("Scenes and their parameters:\n{}\nFaults:\n", scenes());
     for fault in Fault::all() {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  {:<23}{}", fault.as_str(), fault.description());

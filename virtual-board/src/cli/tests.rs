@@ -97,3 +97,17 @@ fn values_and_estimators_that_the_image_does_not_take_are_refused_before_the_run
     let error = in_bounds(&arguments, &image).unwrap_err().to_string();
     assert!(error.contains("has foaw-end-fit alone"), "{error}");
 }
+
+#[test]
+fn help_lists_scenes_and_their_parameters() {
+    use clap::CommandFactory as _;
+
+    let help = Arguments::command().render_long_help().to_string();
+    for scene in SceneKind::ALL {
+        let names = scene.facts().parameters.iter().map(|it| it.name);
+        let names = names.collect::<Vec<_>>().join(", ");
+        let line = format!("  {:<15}{names}", scene.name());
+        let listed = help.lines().any(|it| it == line.trim_end());
+        assert!(listed, "{scene}: {help}");
+    }
+}
