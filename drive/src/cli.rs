@@ -18,7 +18,7 @@ use crate::board::{Answer, Board};
 use crate::bring_up;
 use crate::calibrate;
 use crate::identity;
-use crate::named::{self, Tuning};
+use crate::named::{self, Known, Tuning};
 use crate::port::{Port, list};
 use crate::record::Recorder;
 use crate::session::{self, Plan};
@@ -179,13 +179,16 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
 fn render(
     mut board: Board,
     scene: SceneKind,
-    changes: Vec<(f64, Change)>,
+    mut changes: Vec<(f64, Change)>,
     hold: Hold,
 ) -> Result<(), Failure> {
     let answer = board.compatible()?;
+    // Those of one time keep their order.
+    changes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut known = Known::least(scene);
     for (_, change) in &changes {
         if let Change::Tuning(tuning) = change {
-            tuning.check(&answer.hello)?;
+            known.set(tuning, &answer.hello)?;
         }
     }
     let plan = Plan {

@@ -1,5 +1,7 @@
 //! Scenes, parameters and estimators by their names, and the bounds of values.
 
+mod known;
+
 use drivers::Command;
 use drivers::link::Hello;
 use firmware_app::large;
@@ -10,6 +12,8 @@ use terminal::wording::unknown;
 use tuned::DEVICE_FINGERPRINT;
 
 use crate::refusal::OUT_OF_BOUNDS;
+
+pub use known::Known;
 
 /// The scene of this name.
 ///

@@ -26,7 +26,7 @@ const EARLIEST_MS: u32 = 10;
 pub(crate) struct Plan {
     /// The scene to select.
     pub(crate) scene: Option<SceneKind>,
-    /// Changes of parameters and estimators, each with its time from the begin of the scene, s.
+    /// Changes of parameters and estimators in order, each with its time from the begin of the scene, s.
     pub(crate) changes: Vec<(f64, Change)>,
     /// Length in the board's time, from the begin of the scene if there is one, s; `None`: until
     /// Ctrl-C.
@@ -209,7 +209,7 @@ fn follow(
     let patience = board.patience();
     let mut limit = Limit::new(patience, hello.rate, Instant::now());
     // The next one last.
-    changes.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    changes.reverse();
     let mut every = every.map(|seconds| Every::new(seconds, hello.rate));
     let mut pace = Pace::new(hello.rate, Instant::now());
     let mut clock = Clock::new(hello.rate);

@@ -201,3 +201,36 @@ fn refusal_is_found_by_an_answer_to_a_later_question_alone() {
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(error(&output).contains("the board refuses it"));
 }
+
+#[test]
+fn values_that_a_scene_refuses_together_are_refused_before_the_board_is_armed() {
+    let (output, commands) = board().run(&[
+        "select",
+        "detents",
+        "--tune",
+        "per-turn=1000@2",
+        "--tune",
+        "amplitude=0.04@1",
+        "--seconds",
+        "3",
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        error(&output),
+        "detents per-turn 1000: the value is out of bounds; amplitude times per-turn is at most 0.35 N·m/rad"
+    );
+    assert_eq!(sorted(&commands), (Vec::new(), 0));
+}
+
+#[test]
+fn changes_of_one_time_keep_their_order() {
+    let tune = ["--tune", "stiffness=0.1", "--tune", "stiffness=0.2"];
+    let arguments = [&["select", "wall", "--seconds", "0.2"][..], &tune].concat();
+    let (output, commands) = board().run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let values = commands.iter().filter_map(|command| match command {
+        Command::Tune { value, .. } => Some(*value),
+        _ => None,
+    });
+    assert_eq!(values.collect::<Vec<_>>(), [0.1, 0.2]);
+}
