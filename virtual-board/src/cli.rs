@@ -21,7 +21,7 @@ use terminal::failure::Failure;
 use terminal::output::{note, print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
-use self::checks::{has_stdout, in_bounds, in_place, in_time};
+use self::checks::{has_stdout, in_bounds, in_place, in_time, taken};
 use crate::bridge::{Bridge, LAG_S, Pace};
 use crate::budget;
 use crate::command::Command;
@@ -41,7 +41,8 @@ const IMAGE: &str = concat!(
 /// log of the image, the cost of its control task, and the parasitic force on the hand.
 ///
 /// Exit status: 0; 1 if the control task never ran, the image used hardware that the emulator does not
-/// model, or the firmware started again while it was recorded; 2 if the input cannot be used.
+/// model or refused a command, or the firmware started again while it was recorded; 2 if the input cannot
+/// be used.
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo board",
@@ -276,6 +277,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         return Err(Failure::Check("the control task never ran".to_owned()));
     }
     outcome.check()?;
+    taken(&arguments, &outcome)?;
     recorded
 }
 

@@ -30,6 +30,7 @@ pub mod port;
 mod probe;
 mod quadrature;
 pub mod recording;
+mod refused;
 mod rtt;
 pub mod run;
 pub mod scene;

@@ -1,6 +1,6 @@
 //! Scenes of the image: their simulated hands, and the commands that set their parameters.
 
-use drive::named::Tuning;
+use drive::named::{Known, Tuning};
 use drivers::link::Hello;
 use estimator_core::Hertz;
 use experiments::closed_loop::{self, Hand, Press};
@@ -72,17 +72,22 @@ pub fn tune(scene: SceneKind, text: &str) -> Result<Command, String> {
     })
 }
 
-/// Checks that the image takes the value of a text that [`tune`] has parsed.
+/// Checks that the image takes the value of a text that [`tune`] has parsed, after those that are `known`.
 ///
 /// # Errors
 /// One line with the bounds.
-pub(crate) fn check(scene: SceneKind, text: &str, hello: &Hello) -> Result<(), String> {
+pub(crate) fn check(
+    scene: SceneKind,
+    text: &str,
+    hello: &Hello,
+    known: &mut Known,
+) -> Result<(), String> {
     let value = |(name, value): (_, &str)| Some((name, value.parse().ok()?));
     let Some((name, value)) = text.split_once('=').and_then(value) else {
         return Ok(());
     };
     Tuning::new(scene, name, value)
-        .and_then(|tuning| tuning.check(hello))
+        .and_then(|tuning| known.set(&tuning, hello))
         .map_err(|failure| format!("--tune {text}: {failure}"))
 }
 

@@ -45,3 +45,17 @@ fn runs_that_are_not_in_the_recording_are_told_by_the_exit_status() {
     }
     assert!(fs::read_to_string(&out).unwrap().lines().count() > 200);
 }
+
+#[test]
+fn command_that_the_image_refuses_fails_the_run() {
+    Image::build("").unwrap();
+    let mut board = Command::new(env!("CARGO_BIN_EXE_virtual-board"));
+    let board = board.arg("--image").arg(Image::built());
+    let board = board.args(["--blank", "--scene", "wall", "--seconds", "0.4"]);
+    let output = board.output().unwrap();
+    let report = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{report}");
+    let said = "the image refused a command: the signs of encoders and currents have not been verified; run \
+                cargo drive bring-up, or leave --blank out";
+    assert!(report.contains(said), "{report}");
+}

@@ -1,14 +1,16 @@
-//! Checks of the arguments before the run.
+//! Checks of the arguments before the run, and of their commands after it.
 
 use std::path::Path;
 
-use drive::named::chosen;
+use drive::named::{Known, chosen};
 use terminal::failure::Failure;
 use terminal::output::{check_place, is_same, is_stdout, one_file, refuse_input};
 
 use super::Arguments;
+use crate::fault::Fault;
 use crate::identity;
 use crate::image::Image;
+use crate::run::Outcome;
 use crate::scene;
 
 /// The output files with their options.
@@ -74,12 +76,33 @@ pub(super) fn in_bounds(arguments: &Arguments, image: &Image) -> Result<(), Fail
     let Some(hello) = identity::of(image)? else {
         return Ok(());
     };
-    for (_, text) in &arguments.tune {
-        scene::check(arguments.scene, text, &hello)?;
+    let mut known = Known::usual();
+    let mut tunes: Vec<_> = arguments.tune.iter().collect();
+    tunes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    for (_, text) in tunes {
+        scene::check(arguments.scene, text, &hello, &mut known)?;
     }
     for (_, number) in &arguments.estimator {
         let number = number.0;
         chosen(number, &hello).map_err(|error| format!("--estimator {number}: {error}"))?;
     }
     Ok(())
+}
+
+/// Fails if the image has refused a command of the run: what the run shows is not what was asked for.
+pub(super) fn taken(arguments: &Arguments, outcome: &Outcome) -> Result<(), Failure> {
+    // Random bytes may be commands.
+    let is_flood = |(_, fault): &(f64, Fault)| *fault == Fault::CommandFlood;
+    if arguments.fault.iter().any(is_flood) {
+        return Ok(());
+    }
+    outcome.refusal().map_or(Ok(()), |reason| {
+        let remedy = match arguments.blank {
+            true => ", or leave --blank out",
+            false => "",
+        };
+        Err(Failure::Check(format!(
+            "the image refused a command: {reason}{remedy}"
+        )))
+    })
 }

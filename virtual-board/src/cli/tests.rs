@@ -70,7 +70,12 @@ fn handle_of_a_board_before_its_bring_up_is_free() {
 fn values_and_estimators_that_the_image_does_not_take_are_refused_before_the_run() {
     let image = Image::build("").unwrap();
     let refused = |arguments: &[&str]| {
-        let all = ["cargo board", "--scene", "wall"].iter().chain(arguments);
+        let wall = ["--scene", "wall"];
+        let scene = match arguments.contains(&"--scene") {
+            true => &[][..],
+            false => &wall,
+        };
+        let all = ["cargo board"].iter().chain(scene).chain(arguments);
         in_bounds(&Arguments::parse_from(all), &image).map_err(|error| error.to_string())
     };
     for (arguments, said) in [
@@ -92,6 +97,22 @@ fn values_and_estimators_that_the_image_does_not_take_are_refused_before_the_run
     }
     let all = ["--tune", "stiffness=0.35@0.2", "--estimator", "1@0.2"];
     assert_eq!(refused(&all), Ok(()));
+    let detents = |arguments: &[&str]| refused(&[&["--scene", "detents"], arguments].concat());
+    for tune in ["amplitude=0.04@0.5", "per-turn=1000@0.5"] {
+        let error = detents(&["--tune", tune]).unwrap_err();
+        let text = tune.trim_end_matches("@0.5");
+        assert!(
+            error.starts_with(&format!("--tune {text}: detents ")),
+            "{error}"
+        );
+        assert!(
+            error.contains("amplitude times per-turn is at most"),
+            "{error}"
+        );
+    }
+    // The order is that of the times.
+    let all = ["--tune", "amplitude=0.04@0.5", "--tune", "per-turn=8@0.4"];
+    assert_eq!(detents(&all), Ok(()));
     let image = Image::build("large-foaw").unwrap();
     let arguments = Arguments::parse_from(["cargo board", "--estimator", "0@0.2"]);
     let error = in_bounds(&arguments, &image).unwrap_err().to_string();
