@@ -98,6 +98,11 @@ impl Board {
         self.patience
     }
 
+    /// Number of the questions that have no answer yet.
+    pub(crate) const fn asked(&self) -> u32 {
+        self.asked
+    }
+
     /// Sends a command.
     ///
     /// # Errors

@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use clap::{CommandFactory as _, Parser as _};
 use drivers::{Command, Setting};
-use firmware_app::large;
 use haptic_control::SceneKind;
 use terminal::explain;
 use terminal::failure::Failure;
@@ -134,7 +133,7 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
         Action::Estimator { number } => {
             let mut board = open()?;
             board.compatible()?;
-            let name = format!("estimator {}", large::NAMES[usize::from(number)]);
+            let name = named::called(number);
             board.change(Command::Estimator(number), &name)?;
             note(format_args!("{name}, until the next reset"));
             Ok(())

@@ -34,6 +34,15 @@ pub(crate) fn estimator(name: &str) -> Result<u8, String> {
     number.ok_or_else(|| unknown("estimator", name, large::NAMES))
 }
 
+/// An estimator of the default image in words.
+pub(crate) fn called(number: u8) -> String {
+    let name = large::NAMES.get(usize::from(number));
+    name.map_or_else(
+        || format!("estimator {number}"),
+        |name| format!("estimator {name}"),
+    )
+}
+
 /// Names of the estimators of an image, each at its number.
 #[must_use]
 pub fn estimators(hello: &Hello) -> &'static [&'static str] {

@@ -1,7 +1,12 @@
 //! Why a board refuses a command, and why a program of the host refuses a board.
 
+use std::collections::VecDeque;
+
 use drivers::link::{Hello, PROTOCOL, Parser, Rejected};
+use haptic_control::SceneKind;
 use terminal::failure::Failure;
+
+use crate::named::explained;
 
 /// Reason of the refusal of a value.
 pub(crate) const OUT_OF_BOUNDS: &str = "the value is out of bounds";
@@ -51,9 +56,79 @@ pub fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str> {
     .find_map(|(before, now, reason)| (before != now).then_some(reason))
 }
 
+/// The commands of a session that wait for the counts of refused ones. The answers come in the order of the
+/// questions.
+pub(crate) struct Sent {
+    /// The counts before the session.
+    before: Option<Rejected>,
+    scene: Option<SceneKind>,
+    /// Names of the commands; questions from before the session have none.
+    names: VecDeque<Option<String>>,
+}
+
+impl Sent {
+    /// A session with a scene, and so many questions from before it without an answer.
+    pub(crate) fn new(before: Option<Rejected>, scene: Option<SceneKind>, earlier: u32) -> Self {
+        Self {
+            before,
+            scene,
+            names: (0..earlier).map(|_| None).collect(),
+        }
+    }
+
+    /// A command of this name has been sent, and a question after it.
+    pub(crate) fn add(&mut self, name: String) {
+        self.names.push_back(Some(name));
+    }
+
+    /// Takes an answer.
+    ///
+    /// # Errors
+    /// [`Failure::Check`] with the name of the command if the board has refused it.
+    pub(crate) fn check(&mut self, now: &Rejected) -> Result<(), Failure> {
+        let name = self.names.pop_front().flatten();
+        let Some(reason) = self.before.and_then(|before| refusal(&before, now)) else {
+            return Ok(());
+        };
+        let reason = explained(reason, self.scene);
+        Err(Failure::Check(match name {
+            Some(name) => format!("{name}: the board refuses it: {reason}"),
+            None => format!("the board refuses a command: {reason}"),
+        }))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn refused_command_is_named_by_its_place_among_the_answers() {
+        let none = Rejected::default();
+        let refused = Rejected {
+            out_of_bounds: 1,
+            ..none
+        };
+        let sent = || {
+            let mut sent = Sent::new(Some(none), Some(SceneKind::Wall), 1);
+            sent.add("scene wall".to_owned());
+            sent.add("wall stiffness 9 N·m/rad".to_owned());
+            sent
+        };
+        let mut first = sent();
+        let said = first.check(&refused).unwrap_err().to_string();
+        assert_eq!(
+            said,
+            "the board refuses a command: the value is out of bounds"
+        );
+        let mut third = sent();
+        assert!(third.check(&none).is_ok() && third.check(&none).is_ok());
+        let said = third.check(&refused).unwrap_err().to_string();
+        assert_eq!(
+            said,
+            "wall stiffness 9 N·m/rad: the board refuses it: the value is out of bounds"
+        );
+    }
 
     #[test]
     fn refusal_is_named_by_the_count_that_changed() {

@@ -11,10 +11,9 @@ use terminal::output::{note, print_to_reader};
 use crate::board::{Answer, Board};
 use crate::clock::{Clock, Limit};
 use crate::interrupt;
-use crate::named::explained;
 use crate::pace::Pace;
 use crate::record::Recorder;
-use crate::refusal::refusal;
+use crate::refusal::Sent;
 use crate::timed::Change;
 use crate::watch::{Every, line, state};
 
@@ -35,7 +34,7 @@ pub(crate) struct Plan {
     pub(crate) every: Option<f64>,
     /// The recording to make.
     pub(crate) recorder: Option<Recorder>,
-    /// Whether keep-alives are sent.
+    /// Whether keep-alives are sent. Without them, the session sends no command.
     pub(crate) keeps_alive: bool,
 }
 
@@ -200,10 +199,12 @@ fn follow(
         recorder: _,
         keeps_alive,
     } = plan;
+    let mut sent = Sent::new(*rejected, scene, board.asked());
     if let Some(scene) = scene.filter(|_| !interrupt::came()) {
         board.send(Command::Request(Request::Select(scene.number())))?;
         // The answer has the counts of refused commands.
         board.send(Command::Identify)?;
+        sent.add(format!("scene {scene}"));
     }
     let mut starts = scene.is_some_and(|scene| scene != SceneKind::Off);
     let patience = board.patience();
@@ -227,13 +228,10 @@ fn follow(
             continue;
         };
         sink(message);
-        if let (Message::Rejected(now), Some(before)) = (message, rejected)
-            && let Some(reason) = refusal(before, &now)
+        if let Message::Rejected(now) = message
+            && keeps_alive
         {
-            return Err(Failure::Check(format!(
-                "the board refuses a command: {}",
-                explained(reason, scene)
-            )));
+            sent.check(&now)?;
         }
         if let Message::Supply(now) = message {
             supply = Some(now.volts);
@@ -268,6 +266,7 @@ fn follow(
         while let Some((_, change)) = changes.pop_if(|(at, _)| *at <= elapsed) {
             board.send(change.command())?;
             board.send(Command::Identify)?;
+            sent.add(change.to_string());
         }
         if seconds.is_some_and(|seconds| elapsed >= seconds) {
             break;

@@ -36,6 +36,16 @@ pub(crate) fn timed(text: &str) -> Result<Timed, String> {
     })
 }
 
+/// The name, as messages about a single command have it.
+impl std::fmt::Display for Change {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Tuning(tuning) => tuning.fmt(f),
+            Self::Estimator(number) => write!(f, "{}", named::called(*number)),
+        }
+    }
+}
+
 /// A change of a running session.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Change {

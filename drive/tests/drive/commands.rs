@@ -185,7 +185,10 @@ fn refused_value_is_told_and_ends_a_session_with_disarm() {
         "10",
     ]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(error(&output).contains("refuses a command: the value is out of bounds"));
+    assert_eq!(
+        error(&output),
+        "wall stiffness 0.2 N·m/rad: the board refuses it: the value is out of bounds"
+    );
     assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
 }
 
@@ -233,4 +236,21 @@ fn changes_of_one_time_keep_their_order() {
         _ => None,
     });
     assert_eq!(values.collect::<Vec<_>>(), [0.1, 0.2]);
+}
+
+/// A session that sends no command is not the one whose command was damaged.
+#[test]
+fn noise_on_the_command_channel_ends_no_session_that_only_listens() {
+    let noisy = || {
+        Board::new(Script {
+            garbles: true,
+            ..Script::default()
+        })
+    };
+    let (output, _) = noisy().run(&["watch", "--seconds", "0.5"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (output, _) = noisy().run(&["arm", "--seconds", "0.5"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let said = "the board refuses a command: the command arrived damaged";
+    assert_eq!(error(&output), said);
 }

@@ -261,6 +261,11 @@ impl<'a> Player<'a> {
                 self.bytes.extend(self.message(index.into()));
             }
         }
+        if self.script.garbles && self.seq.is_multiple_of(100) {
+            self.rejected.garbage += 1;
+            let told = self.message(self.rejected.into());
+            self.bytes.extend(told);
+        }
         self.seq += 1;
         if number.is_some() && number == self.script.starts_again {
             (self.seq, self.asked) = (0, None);

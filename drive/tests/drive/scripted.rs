@@ -60,6 +60,8 @@ pub(super) struct Script {
     pub(super) settings: Settings,
     /// Whether the board takes the command `disarm`.
     pub(super) disarms: bool,
+    /// Whether noise reaches the command channel, which the board tells every 100 frames.
+    pub(super) garbles: bool,
 }
 
 impl Default for Script {
@@ -96,6 +98,7 @@ impl Default for Script {
             strokes_end_after: None,
             settings: Settings::DEFAULT,
             disarms: true,
+            garbles: false,
         }
     }
 }
