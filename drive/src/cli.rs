@@ -10,7 +10,7 @@ use drivers::{Command, Setting};
 use haptic_control::SceneKind;
 use terminal::explain;
 use terminal::failure::Failure;
-use terminal::output::{note, print_bytes};
+use terminal::output::{is_stdout, note, print_bytes};
 
 use self::arguments::{Action, Arguments, Hold};
 use crate::board::{Answer, Board};
@@ -32,6 +32,7 @@ impl Hold {
             changes: Vec::new(),
             seconds: self.seconds,
             every: Some(self.every),
+            has_stdout: self.record.as_deref().is_some_and(is_stdout),
             recorder: self.record.map(|out| Recorder::new(&answer.hello, out)),
             keeps_alive: true,
         }
@@ -206,6 +207,7 @@ fn shown(every: Option<f64>, seconds: Option<f64>, recorder: Option<Recorder>) -
         seconds,
         every,
         recorder,
+        has_stdout: false,
         keeps_alive: false,
     }
 }

@@ -34,6 +34,8 @@ pub(crate) struct Plan {
     pub(crate) every: Option<f64>,
     /// The recording to make.
     pub(crate) recorder: Option<Recorder>,
+    /// Whether standard output has the recording, so that the lines of text go to standard error.
+    pub(crate) has_stdout: bool,
     /// Whether keep-alives are sent. Without them, the session sends no command.
     pub(crate) keeps_alive: bool,
 }
@@ -197,6 +199,7 @@ fn follow(
         seconds,
         every,
         recorder: _,
+        has_stdout,
         keeps_alive,
     } = plan;
     let mut sent = Sent::new(*rejected, scene, board.asked());
@@ -246,7 +249,7 @@ fn follow(
         mode = Mode::from_code(frame.state);
         if every.as_mut().is_some_and(|every| every.selects(&frame)) {
             let text = line(&frame, supply, hello);
-            if !print_to_reader(format!("{text}\n").as_bytes())? {
+            if !is_read(&text, has_stdout)? {
                 note("nobody reads the lines any more: the session ends");
                 break;
             }
@@ -273,6 +276,15 @@ fn follow(
         }
     }
     Ok(())
+}
+
+/// Shows a line of text: beside a recording on standard output, as a note. Whether somebody reads on.
+fn is_read(text: &str, has_stdout: bool) -> Result<bool, Failure> {
+    if has_stdout {
+        note(text);
+        return Ok(true);
+    }
+    print_to_reader(format!("{text}\n").as_bytes())
 }
 
 /// Whether the board has stopped by itself since the frame before.

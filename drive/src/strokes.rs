@@ -48,6 +48,7 @@ pub(crate) fn plan(scene: Option<SceneKind>, keeps_alive: bool, seconds: f64) ->
         seconds: Some(seconds),
         every: None,
         recorder: None,
+        has_stdout: false,
         keeps_alive,
     }
 }

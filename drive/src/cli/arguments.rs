@@ -171,7 +171,7 @@ pub(super) struct Hold {
     /// Print a line of telemetry every S seconds of the board's time
     #[arg(long, value_name = "S", default_value = "0.5", allow_negative_numbers = true, value_parser = seconds)]
     pub(super) every: f64,
-    /// Write a recording to FILE at the end
+    /// Write a recording to FILE at the end; - is standard output, and the lines go to standard error
     #[arg(long, value_name = "FILE.csv")]
     pub(super) record: Option<PathBuf>,
 }

@@ -71,6 +71,23 @@ fn session_is_recorded_beside_its_lines() {
     check(&fs::read_to_string(&out).unwrap(), 2);
 }
 
+/// The lines of text go to standard error.
+#[test]
+fn recording_is_alone_on_standard_output() {
+    let running = Script {
+        begin: Mode::Running,
+        ..Script::default()
+    };
+    let arguments = ["keep-alive", "--record", "-", "--seconds", "0.5"];
+    let (output, _) = Board::new(running).run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    check(&String::from_utf8(output.stdout).unwrap(), 2);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("state running, cause none"), "{said}");
+    let report = "standard output: 501 frames recorded, 0 missing at 0 places";
+    assert!(said.contains(report), "{said}");
+}
+
 #[test]
 fn what_came_before_an_error_is_recorded() {
     let folder = folder("lost");
