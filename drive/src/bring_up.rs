@@ -11,6 +11,7 @@ use crate::board::{Answer, Board};
 use crate::channels::are_measured;
 use crate::check::{Line, failed, show};
 use crate::currents;
+use crate::interrupt;
 use crate::response::{Motion, Response};
 use crate::session::Plan;
 use crate::settings;
@@ -35,17 +36,21 @@ const EXPLAINED: f64 = 0.5;
 type Check = fn(&'static str, &Seen) -> Vec<Line>;
 
 /// Checks a board step by step, prints a line for each, and notes in the settings whether the signs are
-/// verified. With `turns`, the shafts are turned by hand at first.
+/// verified. With `turns`, the shafts are turned by hand at first. After a failed check or an interrupt the
+/// signs are not verified, even if they were before: whoever checks a board again may have changed its wires.
 ///
 /// # Errors
-/// [`Failure::Check`] if a check failed; otherwise those of the session.
+/// [`Failure::Check`] if a check failed or the checks were interrupted; otherwise those of the session.
 pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Failure> {
     let answer = board.compatible()?;
     let mut lines = vec![identity(&answer)];
     show(board, &lines[0])?;
     let mut pulses = Vec::new();
     if turns && failed(&lines) == 0 {
-        pulses = turns::by_hand(board, &answer)?;
+        match turns::by_hand(board, &answer) {
+            Err(Failure::Check(_)) if interrupt::came() => return interrupted(board),
+            found => pulses = found?,
+        }
         turns::shown(board, &pulses, &mut lines)?;
     }
     if failed(&lines) == 0 {
@@ -74,6 +79,7 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
                 pulses.extend(seen.indices);
                 found
             }
+            Err(Failure::Check(_)) if interrupt::came() => return interrupted(board),
             Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
             Err(failure) => return Err(failure),
         };
@@ -83,12 +89,7 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
         turns::shown(board, &pulses, &mut lines)?;
     }
     let wrong = failed(&lines);
-    let verified = Setting::SignsVerified;
-    let command = Command::Set {
-        setting: verified.number(),
-        value: if wrong > 0 { 0.0 } else { 1.0 },
-    };
-    board.change(command, verified.facts().name)?;
+    verify(board, wrong == 0)?;
     if wrong > 0 {
         return Err(Failure::Check(format!(
             "bring-up: {wrong} of {} checks failed; scenes in closed loop are refused",
@@ -100,6 +101,26 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
     }
     board.note("signs verified until the next reset; cargo drive settings --store keeps it");
     Ok(())
+}
+
+/// Sets whether the signs are verified, until the next reset.
+fn verify(board: &mut Board, are_right: bool) -> Result<(), Failure> {
+    let verified = Setting::SignsVerified;
+    let command = Command::Set {
+        setting: verified.number(),
+        value: f32::from(u8::from(are_right)),
+    };
+    board.change(command, verified.facts().name)
+}
+
+/// Ends after an interrupt, which is no failed check.
+fn interrupted(board: &mut Board) -> Result<(), Failure> {
+    verify(board, false)?;
+    Err(Failure::Check(
+        "bring-up: interrupted before its last check; scenes in closed loop are refused until it passes or the \
+         board is reset"
+            .to_owned(),
+    ))
 }
 
 /// Prints lines and adds them to those before.

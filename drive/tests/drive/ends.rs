@@ -5,7 +5,7 @@ use std::io::Read as _;
 use std::process::{Command as Process, Stdio};
 use std::time::Duration;
 
-use drivers::Command;
+use drivers::{Command, Setting, Settings};
 use haptic_control::{Mode, Stop};
 
 use crate::commands::{ARM, DISARM, WALL, deduplicated, sorted};
@@ -235,4 +235,41 @@ fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
         assert!(error.contains(said), "{error}");
         assert!(commands.iter().all(|it| *it == Command::Identify));
     }
+}
+
+/// An interrupt is no failed check, and leaves no earlier verification.
+#[cfg(unix)]
+#[test]
+fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
+    let board = Board::new(Script {
+        measures: Some([(0.0, 1.0); 2]),
+        settings: Settings::COMMISSIONED,
+        ..Script::default()
+    });
+    let tool = board
+        .tool(&["bring-up"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    board.wait_for(ARM);
+    let id = tool.id().to_string();
+    let killed = Process::new("kill").args(["-INT", &id]).status().unwrap();
+    assert!(killed.success());
+    let output = tool.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let [lines, said] = [output.stdout, output.stderr].map(|it| String::from_utf8(it).unwrap());
+    assert!(
+        lines.contains("pass  at rest") && !lines.contains("FAIL"),
+        "{lines}"
+    );
+    let end = "error: bring-up: interrupted before its last check; scenes in closed loop are refused until it \
+               passes or the board is reset\n";
+    assert!(said.ends_with(end), "{said}");
+    let unverified = Command::Set {
+        setting: Setting::SignsVerified.number(),
+        value: 0.0,
+    };
+    let commands = board.commands();
+    assert!(commands.contains(&unverified), "{commands:?}");
 }
