@@ -72,7 +72,12 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
         Ok(Board::new(port, Duration::from_secs_f64(timeout)))
     };
     match action {
-        Action::List => print_ports(),
+        Action::List(_) => match port {
+            None => print_ports(),
+            Some(name) => Err(Failure::Input(format!(
+                "--port {name}: list opens no port; leave --port out"
+            ))),
+        },
         Action::Info => {
             let answer = open()?.identify()?;
             print_bytes(identity::text(&answer).as_bytes())

@@ -44,7 +44,7 @@ pub(super) struct Arguments {
 pub(super) enum Action {
     /// Print the serial ports of this machine
     #[command(after_help = "Example:\n  cargo drive list")]
-    List,
+    List(NoBoard),
     /// Print the identity of the board: protocol, version, features, device
     #[command(after_help = "Example:\n  cargo drive info --port /dev/ttyACM0")]
     Info,
@@ -160,6 +160,15 @@ pub(super) enum Action {
         #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
         seconds: Option<f64>,
     },
+}
+
+/// The options of a board, which a command without a board does not show.
+#[derive(Debug, Args)]
+pub(super) struct NoBoard {
+    #[arg(long, hide = true)]
+    pub(super) port: Option<String>,
+    #[arg(long, hide = true, value_parser = patience)]
+    pub(super) timeout: Option<f64>,
 }
 
 /// Options of the commands that hold the board armed.

@@ -105,6 +105,22 @@ fn list_needs_no_port() {
 }
 
 #[test]
+fn list_takes_no_port() {
+    for arguments in [["--port", "nope", "list"], ["list", "--port", "nope"]] {
+        let output = tool(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = "--port nope: list opens no port; leave --port out";
+        assert_eq!(error(&output), said);
+    }
+    let help = tool(&["list", "--help"]).output().unwrap();
+    let help = String::from_utf8(help.stdout).unwrap();
+    assert!(
+        !help.contains("--port") && !help.contains("--timeout"),
+        "{help}"
+    );
+}
+
+#[test]
 fn input_is_refused_before_the_board_gets_a_command() {
     // No port is opened for these.
     for (arguments, said) in [
