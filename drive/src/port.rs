@@ -1,18 +1,15 @@
 //! Ports: a serial port, a TCP connection to an emulated board or a debug server, or a pipe to another thread.
 
+mod serial;
+
 use std::collections::VecDeque;
-#[cfg(unix)]
-use std::fs::{File, TryLockError};
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs as _};
-#[cfg(unix)]
-use std::os::fd::AsFd as _;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use drivers::link::BAUD;
-use serial2::{IntoSettings as _, KeepSettings, SerialPort};
+use serial2::SerialPort;
 use terminal::failure::Failure;
 
 /// Longest time of one read. The tool looks at the clock and at interrupts in between.
@@ -76,9 +73,14 @@ impl Port {
             Some(name) => name.to_owned(),
             None => only(&list()?)?,
         };
+        if name.is_empty() {
+            return Err(Failure::Input(
+                "the name of the port is empty; give a serial port, or tcp:HOST:PORT".to_owned(),
+            ));
+        }
         let opened = match name.strip_prefix(TCP) {
             Some(address) => connect(address).map(Channel::Tcp),
-            None => open_serial(&name).map(Channel::Serial),
+            None => serial::open(&name).map(Channel::Serial),
         };
         match opened {
             Ok(channel) => Ok(Self {
@@ -226,10 +228,12 @@ fn taken(name: &str) -> String {
 fn unopened(name: &str, error: &io::Error) -> String {
     let remedy = match error.kind() {
         ErrorKind::ResourceBusy => return taken(name),
+        _ if name.starts_with("tcp://") => "write tcp:HOST:PORT, without slashes",
         _ if name.starts_with(TCP) => "start the board's server first, or give tcp:HOST:PORT",
         ErrorKind::PermissionDenied => {
             "add the user to the group of the port (dialout) and log in again"
         }
+        _ if name.to_ascii_lowercase().starts_with(TCP) => "write tcp: in small letters",
         _ if is_address(name) => "for a TCP port, write tcp: before the address",
         _ => "cargo drive list shows the ports",
     };
@@ -249,35 +253,6 @@ fn is_silence(error: &io::Error) -> bool {
         ErrorKind::Interrupted,
     ];
     kinds.contains(&error.kind())
-}
-
-fn open_serial(name: &str) -> io::Result<SerialPort> {
-    // The settings and the input of a port that another program has stay as they are.
-    let mut port = SerialPort::open(name, KeepSettings)?;
-    #[cfg(unix)]
-    lock(&port)?;
-    let mut settings = port.get_configuration()?;
-    BAUD.apply_to_settings(&mut settings)?;
-    port.set_configuration(&settings)?;
-    port.set_read_timeout(READ)?;
-    port.set_write_timeout(WRITE)?;
-    // What the board sent before has no meaning for this connection.
-    port.discard_input_buffer()?;
-    Ok(port)
-}
-
-/// Locks a serial port until it is closed. Unix gives a port to several programs at once, Windows to one.
-///
-/// # Errors
-/// [`ErrorKind::ResourceBusy`] if another program has the lock.
-#[cfg(unix)]
-fn lock(port: &SerialPort) -> io::Result<()> {
-    // The copy shares the lock of the port, so that its end leaves the port locked.
-    let copy = File::from(port.as_fd().try_clone_to_owned()?);
-    copy.try_lock().map_err(|error| match error {
-        TryLockError::WouldBlock => ErrorKind::ResourceBusy.into(),
-        TryLockError::Error(error) => error,
-    })
 }
 
 fn connect(address: &str) -> io::Result<TcpStream> {
@@ -310,24 +285,30 @@ mod tests {
         }
     }
 
-    #[cfg(target_os = "linux")]
     #[test]
-    fn serial_port_has_one_program_at_a_time() {
-        use std::os::fd::AsRawFd as _;
-
-        let (_board, device) = SerialPort::pair().unwrap();
-        let link = format!("/proc/self/fd/{}", device.as_raw_fd());
-        let name = std::fs::read_link(link).unwrap();
-        let name = name.to_str().unwrap();
-        let first = Port::open(Some(name)).unwrap();
-        let Err(error) = Port::open(Some(name)) else {
-            panic!("two programs");
-        };
-        assert_eq!(error.status(), 2);
-        let said = format!("{name}: another program has this port; end it first");
-        assert_eq!(error.to_string(), said);
-        drop(first);
-        assert!(Port::open(Some(name)).is_ok());
+    fn name_that_is_almost_right_has_its_remedy() {
+        for (name, said) in [
+            (
+                "",
+                "the name of the port is empty; give a serial port, or tcp:HOST:PORT",
+            ),
+            (
+                "tcp://127.0.0.1:1",
+                "; write tcp:HOST:PORT, without slashes",
+            ),
+            ("TCP:127.0.0.1:1", "; write tcp: in small letters"),
+            (
+                "127.0.0.1:1",
+                "; for a TCP port, write tcp: before the address",
+            ),
+            ("nope", "; cargo drive list shows the ports"),
+        ] {
+            let Err(error) = Port::open(Some(name)) else {
+                panic!("{name} is open");
+            };
+            assert!(error.to_string().ends_with(said), "{error}");
+            assert_eq!(error.status(), 2);
+        }
     }
 
     #[test]
