@@ -1,6 +1,7 @@
 //! Rows as MCAP: a topic for each group of channels, with messages of protobuf and their descriptors.
 
 use std::collections::BTreeMap;
+use std::error::Error as _;
 use std::io::Write;
 
 use mcap::records::MessageHeader;
@@ -166,8 +167,15 @@ impl<W: Write> McapWriter<W> {
     }
 }
 
+/// The error with its causes: that of the file, as a full disk, is one.
 fn failed(error: &mcap::McapError) -> String {
-    format!("MCAP: {error}")
+    let mut said = format!("MCAP: {error}");
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        said += &format!(": {error}");
+        cause = error.source();
+    }
+    said
 }
 
 /// Rows as the bytes of an MCAP file.
@@ -188,6 +196,31 @@ pub fn mcap<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A disk that has no room.
+    struct Full;
+
+    impl Write for Full {
+        fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+            Err(std::io::Error::new(
+                std::io::ErrorKind::StorageFull,
+                "No space left on device",
+            ))
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn error_of_the_file_is_told() {
+        let written = McapWriter::new(Full, &[]).and_then(McapWriter::finish);
+        let Err(said) = written else {
+            panic!("a full disk takes the file");
+        };
+        assert!(said.ends_with(": No space left on device"), "{said}");
+    }
 
     /// What a reader finds: for each topic the message, its package and its fields, all optional doubles.
     #[test]
