@@ -121,6 +121,19 @@ fn list_takes_no_port() {
 }
 
 #[test]
+fn missing_command_is_told_with_the_names_of_all() {
+    let output = tool(&[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let said = error(&output);
+    let begin = "a command is missing; give one of list, info, arm, disarm, select, ";
+    assert!(said.starts_with(begin), "{said}");
+    assert!(
+        said.ends_with(", record, watch; see cargo drive --help"),
+        "{said}"
+    );
+}
+
+#[test]
 fn input_is_refused_before_the_board_gets_a_command() {
     // No port is opened for these.
     for (arguments, said) in [
