@@ -33,8 +33,8 @@ use crate::token::random;
     bin_name = "cargo scope",
     version,
     max_term_width = WIDTH,
-    after_help = "Exit status: 0; 1 if the source fails, or the board is not disarmed at the end; 2 if the input \
-cannot be used, or the board does not answer.\n\nExamples:
+    after_help = "Exit status: 0; 1 if the server fails, or the board is not disarmed at the end; 2 if the input \
+cannot be used, or the board does not answer or is lost.\n\nExamples:
   cargo scope
   cargo scope --recording run.csv
   cargo scope --board /dev/ttyACM0 --record run.mcap"
@@ -75,7 +75,7 @@ struct Arguments {
 /// Runs the command line.
 ///
 /// # Errors
-/// [`Failure::Input`] if the input cannot be used, [`Failure::Check`] if the source fails.
+/// [`Failure::Input`] if the input cannot be used or a board is lost, [`Failure::Check`] if the server fails.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
