@@ -1,15 +1,16 @@
 """Commands of the project in shards on the workers of a Dask cluster.
 
 A shard is a task. Its worker runs the command with ``--shard K/N`` as a process and returns the shard's file. A
-worker that is lost loses its tasks, and the scheduler gives them to other workers. The merge of the program refuses
-a shard that is missing, incomplete or of another run, by its name. The outputs are those of the command without
-shards, byte for byte.
+worker that is lost loses its tasks, and the scheduler gives them to other workers. Shards of an earlier run are kept
+if they are of the same command with the same settings. The merge of the program refuses a shard that is missing or
+incomplete, by its name. The outputs are those of the command without shards, byte for byte.
 
 It needs the package ``distributed``: ``pip install limpid[cluster]``.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -18,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -52,12 +53,11 @@ def _failure(line: str) -> str:
     return line.removeprefix("error: ")
 
 
-def _shard(program: str | None, command: Sequence[str], part: str, folder: str) -> bytes | ValueError:
+def _written(
+    program: str | None, command: Sequence[str], part: str, folder: str, temporary: str | None
+) -> bytes | ValueError:
     """The file of a shard; an error, which is not raised, if the program refuses the command: again it would."""
-    from distributed import get_worker
-
-    # The folder of the worker is removed with it.
-    with tempfile.TemporaryDirectory(dir=get_worker().local_directory) as out:
+    with tempfile.TemporaryDirectory(dir=temporary) as out:
         try:
             done = _process(program, [*command, "--shard", part, "--out", out], folder)
         except OSError as error:
@@ -67,8 +67,60 @@ def _shard(program: str | None, command: Sequence[str], part: str, folder: str) 
             return ValueError(_failure(lines[-1]))
         if done.returncode != 0:
             raise RuntimeError(f"shard {part}: ended with status {done.returncode}: {lines[-1]}")
-        (file,) = Path(out).iterdir()
-        return file.read_bytes()
+        files = list(Path(out).iterdir())
+        if len(files) != 1:
+            return ValueError(
+                f"command={list(command)}: wrote no shard; pass the words of a command that has --shard, for example "
+                "['robust', '--devices', '100']"
+            )
+        return files[0].read_bytes()
+
+
+def _shard(program: str | None, command: Sequence[str], part: str, folder: str) -> bytes | ValueError:
+    """The file of a shard that a worker runs."""
+    from distributed import get_worker
+
+    # The folder of the worker is removed with it.
+    return _written(program, command, part, folder, get_worker().local_directory)
+
+
+#: The last part of the largest number of parts: it has no job, and its file has the settings of the run alone.
+_EMPTY = "1000000/1000000"
+
+
+def _heading(shard: bytes) -> dict[str, Any]:
+    """What the first line of a shard states on its run: the same for all shards of a run."""
+    heading: dict[str, Any] = json.loads(shard.split(b"\n", 1)[0])
+    del heading["part"]
+    return heading
+
+
+def _check(there: Sequence[Path], program: str | None, command: Sequence[str]) -> None:
+    """Refuses shards that are there and are of another run than ``command``."""
+    if not there:
+        return
+    empty = _written(program, command, _EMPTY, os.getcwd(), None)
+    if isinstance(empty, ValueError):
+        raise empty
+    own = _heading(empty)
+    for file in there:
+        try:
+            other = _heading(file.read_bytes())
+        except (ValueError, TypeError, KeyError):
+            # The merge would refuse it, after all other shards are run.
+            what = "not a shard"
+        else:
+            if other == own:
+                continue
+            what = f"shard of another run: {_difference(other, own)}"
+        raise ValueError(f"{file}: {what}; pass another out, or remove the folder {file.parent}")
+
+
+def _difference(other: dict[str, Any], own: dict[str, Any]) -> str:
+    for name in ("command", "version"):
+        if other.get(name) != own[name]:
+            return f"its {name} is {other.get(name)}, not {own[name]}"
+    return "its settings differ, because a file that the command reads has changed"
 
 
 def run(
@@ -83,7 +135,8 @@ def run(
     """Runs a command in shards and merges them, for example ``["zwidth", "--lines", "1024"]``.
 
     Each shard is written into the folder ``OUT.shards`` as soon as it has ended, under the name that the command
-    line gives it. A run that is started again takes the shards that are there and runs the others.
+    line gives it. A run that is started again takes the shards that are there and runs the others; if one of them
+    is of another command or of other settings, nothing is run.
 
     Parameters
     ----------
@@ -105,7 +158,8 @@ def run(
     Raises
     ------
     ValueError
-        The program refuses the command or a shard; the message is the line that it prints.
+        The program refuses the command or a shard; the message is the line that it prints. A shard that is there is
+        of another run; the message names its file.
     """
     from distributed import as_completed
 
@@ -119,9 +173,11 @@ def run(
     folder = Path(f"{os.fspath(out)}.shards")
     folder.mkdir(parents=True, exist_ok=True)
     files = {part: folder / f"shard-{part}-of-{shards}.jsonl" for part in range(1, shards + 1)}
+    there = [file for file in files.values() if file.exists()]
+    _check(there, name, command)
     parts = {}
     for part, file in files.items():
-        if not file.exists():
+        if file not in there:
             future = client.submit(
                 _shard, name, list(command), f"{part}/{shards}", os.getcwd(), retries=retries, pure=False
             )

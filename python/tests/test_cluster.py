@@ -156,13 +156,43 @@ def test_wrong_command_is_refused_in_one_line(client, folders):
     assert not files(folders[1])
 
 
-def test_shards_of_another_run_are_refused_by_name(client, folders):
-    cluster.run(client, TINY, "page", shards=2)
-    Path("page.shards/shard-1-of-2.jsonl").unlink()
-    before = files("page")
-    with pytest.raises(ValueError, match="page.shards/shard-2-of-2.jsonl: settings differ .*: seed = 1, not 4; merge"):
-        cluster.run(client, [*TINY, "--seed", "4"], "page", shards=2)
-    assert files("page") == before
+def test_shards_of_another_run_are_refused_by_name_before_anything_is_run(client, folders):
+    (folders[1] / "device.toml").write_text("[large]\ncounts_per_rev = 4096\n")
+    command = [*TINY, "--device", "device.toml"]
+    first = cluster.run(client, command, "page", shards=2)
+    before = files(".")
+    others = [
+        (["robust", *command[1:], "--seed", "4"], r"--seed 4"),
+        ("zwidth --lines 64 --estimator pll --rate 10000".split(), "host-sim zwidth"),
+    ]
+    for complete in (True, False):
+        if not complete:
+            Path("page.shards/shard-1-of-2.jsonl").unlink()
+            del before[Path("page.shards/shard-1-of-2.jsonl")]
+        for other, said in others:
+            with pytest.raises(ValueError) as error:
+                cluster.run(client, other, "page", shards=2)
+            text = str(error.value)
+            name = "page.shards/shard-1-of-2.jsonl" if complete else "page.shards/shard-2-of-2.jsonl"
+            assert text.startswith(f"{name}: shard of another run: its command is host-sim robust --scene off")
+            assert said in text and text.endswith("; pass another out, or remove the folder page.shards")
+            assert files(".") == before
+    # A file that the command reads has changed.
+    (folders[1] / "device.toml").write_text("[large]\ncounts_per_rev = 2048\n")
+    with pytest.raises(ValueError, match="shard of another run: its settings differ, because a file"):
+        cluster.run(client, command, "page", shards=2)
+    (folders[1] / "device.toml").write_text("[large]\ncounts_per_rev = 4096\n")
+    assert cluster.run(client, command, "page", shards=2) == first
+    Path("page.shards/shard-2-of-2.jsonl").write_text("{}\n")
+    with pytest.raises(ValueError, match="page.shards/shard-2-of-2.jsonl: not a shard; pass another out"):
+        cluster.run(client, command, "page", shards=2)
+
+
+def test_program_that_writes_no_shard_is_refused(client, folders):
+    for command, program in [(["robust", "--help"], None), (["--version"], None), (TINY, "/bin/true")]:
+        with pytest.raises(ValueError, match="wrote no shard; pass the words of a command that has --shard"):
+            cluster.run(client, command, "out", shards=2, program=program)
+    assert not files(folders[1])
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 has no PYTHONSAFEPATH")
