@@ -256,18 +256,6 @@ def _logs(logs: Recording | Iterable[Recording]) -> list[Recording]:
     return recordings
 
 
-def _counts_per_rev(logs: list[Recording], given: int | None, device: object) -> int | None:
-    if given is not None or device is not None:
-        return given
-    stated = {log.counts_per_rev for log in logs}
-    if len(stated) > 1:
-        raise ValueError(
-            f"logs: their counts per revolution are {sorted(map(str, stated))}; pass recordings of one encoder, or "
-            "counts_per_rev"
-        )
-    return stated.pop()
-
-
 def recommend(
     logs: Recording | Iterable[Recording],
     *,
@@ -288,14 +276,14 @@ def recommend(
     instructions
         Largest number of instructions per update on a Cortex-M4 for the second, cheap estimator.
     counts_per_rev
-        Counts per revolution [default: those of the recordings, otherwise 4096].
+        Counts per revolution [default: those in the device file, otherwise those of the recordings, otherwise
+        4096].
     presets
         Path of a file of tuned parameters.
     device
         Path of a device file or a dict; without it, estimators with constants of the device are left out.
     """
     recordings = _logs(logs)
-    counts_per_rev = _counts_per_rev(recordings, counts_per_rev, device)
     ranked, text, notes = _limpid.recommend(recordings, instructions, counts_per_rev, presets, device)
     rows = []
     for row in json.loads(ranked):
@@ -365,7 +353,8 @@ def tune(
         The simulated motion: names of scenarios, number of seeds, duration of each run (s), whether the
         constants of the device are wrong too, and whether the motor has friction.
     counts_per_rev
-        Counts per revolution [default: those of the recordings or of the device, otherwise 4096].
+        Counts per revolution [default: those in the device file, otherwise those of the recordings, otherwise
+        4096].
     presets
         Path of a presets file from which the search on recordings begins.
     device
@@ -386,7 +375,6 @@ def tune(
         if scenarios or seeds or seconds or perturbed or not friction:
             raise ValueError("scenarios, seeds, seconds, perturbed, friction: are of simulated motion; leave them out")
         recordings = _logs(logs)
-        counts_per_rev = _counts_per_rev(recordings, counts_per_rev, device)
         text, rows, notes = _limpid.tune_logs(recordings, names, counts_per_rev, presets, device)
     values = {name: dict(values) for name, values in _limpid.values_of_presets(text)}
     tuned = [TuningRow(name, tuple(before), tuple(found), kept) for name, before, found, kept in rows]

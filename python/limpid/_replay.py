@@ -71,8 +71,8 @@ def replay(
     rate, t
         Rate of the rows, Hz, or the time of each row, s.
     counts_per_rev
-        Counts per revolution of the encoder [default: that of the recording or of the device, otherwise
-        4096].
+        Counts per revolution of the encoder [default: those in the device file, otherwise those of the
+        recording, otherwise 4096].
     estimator
         Name of the estimator, see :func:`estimators`.
     current, coupled, edge_age, edge_boundary
@@ -168,7 +168,8 @@ def read_log(
     resample
         Replace the rows by rows at this rate, Hz.
     counts_per_rev
-        Counts per revolution [default: those that the file states, otherwise that of the device].
+        Counts per revolution [default: those in the device file, otherwise those that the log states,
+        otherwise 4096].
     device
         Path of a device file (TOML), or a dict with its sections.
 

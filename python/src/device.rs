@@ -8,6 +8,7 @@ use catalogue::parameters::{Parameters, PlantKind};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use recordings::arguments::differing_counts;
 use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
@@ -107,6 +108,60 @@ pub(crate) fn device(
         device.stages.large.counts_per_rev = counts;
     }
     Ok(device)
+}
+
+/// What gives the counts per revolution of the large encoder: the argument, or a device file that states them.
+pub(crate) fn counts_source(
+    file: Option<&DeviceFile>,
+    counts_per_rev: Option<u32>,
+) -> Option<&str> {
+    match counts_per_rev {
+        Some(_) => Some("counts_per_rev"),
+        None => file
+            .filter(|file| Device::states_counts(&file.text))
+            .map(|file| file.name.as_str()),
+    }
+}
+
+/// The device for `recordings`, each a name and the counts per revolution that it states, and a line for each
+/// that states others than those that are given.
+pub(crate) fn device_of(
+    file: Option<&DeviceFile>,
+    counts_per_rev: Option<u32>,
+    recordings: &[(&str, Option<u32>)],
+) -> Result<(Device, Vec<String>), Failure> {
+    let Some(source) = counts_source(file, counts_per_rev) else {
+        return Ok((device(file, common_counts(recordings)?)?, Vec::new()));
+    };
+    let device = device(file, counts_per_rev)?;
+    let used = device.stages.large.counts_per_rev;
+    let differing = recordings.iter().filter_map(|(name, stated)| {
+        let stated = stated.filter(|stated| *stated != used)?;
+        Some(format!(
+            "{name}: {}",
+            differing_counts(used, source, stated)
+        ))
+    });
+    let lines = differing.collect();
+    Ok((device, lines))
+}
+
+/// The counts per revolution that all recordings state.
+fn common_counts(recordings: &[(&str, Option<u32>)]) -> Result<Option<u32>, Failure> {
+    let Some((first, counts)) = recordings.first() else {
+        return Ok(None);
+    };
+    let states =
+        |counts: &Option<u32>| counts.map_or("none".to_owned(), |counts| counts.to_string());
+    match recordings.iter().find(|(_, other)| other != counts) {
+        None => Ok(*counts),
+        Some((other, others)) => Err(Failure::Input(format!(
+            "logs: {first} and {other} state different counts per revolution, {} and {}; pass recordings of one \
+             encoder, or counts_per_rev",
+            states(counts),
+            states(others)
+        ))),
+    }
 }
 
 /// Values of parameters by name, of one estimator.

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use recordings::arguments::{ColumnOptions, DeviceFile as NoFile, RecordingOptions};
+use recordings::arguments::{ColumnOptions, Counted, RecordingOptions};
 use recordings::log::{Log, short_name};
 use recordings::recording::Recording;
 use terminal::failure::Failure;
 
-use crate::device::{DeviceFile, device};
+use crate::device::{DeviceFile, counts_source, device};
 use crate::error::{in_python, os_error, value_error};
 
 /// Reads a log; the keywords of `limpid.Recording`.
@@ -35,16 +35,15 @@ pub(crate) fn read_log<'py>(
         resample,
         ..RecordingOptions::default()
     };
-    let given = device.is_some() || counts_per_rev.is_some();
-    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    let source = counts_source(device.as_ref(), counts_per_rev);
+    let of_file = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
     std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
     let read = py.detach(|| -> Result<_, Failure> {
         let log = Log::open(&path)?;
-        let known = given.then_some(device.stages.large.counts_per_rev);
-        let (device, stated) =
-            NoFile::default().with_stated_counts(device, std::slice::from_ref(&log), known)?;
+        let Counted { device, lines, .. } =
+            Counted::new(of_file, source, std::slice::from_ref(&log))?;
         let recording = options.read(&log, &device)?;
-        Ok((recording, stated, device.stages.large.counts_per_rev))
+        Ok((recording, lines, device.stages.large.counts_per_rev))
     });
     let (mut recording, stated, counts_per_rev) = read.map_err(value_error)?;
     let notes = stated

@@ -17,9 +17,20 @@ use terminal::failure::Failure;
 
 use crate::background::interruptible;
 use crate::columns::{Columns, Unchecked};
-use crate::device::Named;
-use crate::device::{DeviceFile, device, parameters as of_presets};
+use crate::device::{DeviceFile, Named, device, device_of, parameters as of_presets};
 use crate::error::{in_python, value_error};
+
+/// The device for these recordings, and what is said about their counts per revolution.
+fn device_of_logs(
+    file: Option<&DeviceFile>,
+    counts_per_rev: Option<u32>,
+    logs: &[Columns<'_>],
+) -> PyResult<(Device, Vec<String>)> {
+    let stated = logs
+        .iter()
+        .map(|log| (log.name.as_str(), log.counts_per_rev));
+    device_of(file, counts_per_rev, &stated.collect::<Vec<_>>()).map_err(value_error)
+}
 
 /// Recordings with their names.
 type Logs = Vec<(String, Recording)>;
@@ -83,7 +94,7 @@ pub(crate) fn recommend(
     device: Option<DeviceFile>,
 ) -> PyResult<(String, String, Vec<String>)> {
     let is_known = device.is_some();
-    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    let (device, mut notes) = device_of_logs(device.as_ref(), counts_per_rev, &logs)?;
     if !(instructions > 0.0 && instructions.is_finite()) {
         return Err(value_error(format!(
             "instructions={instructions}: must be a number above 0"
@@ -94,7 +105,8 @@ pub(crate) fn recommend(
     let columns = columns?;
     interruptible(py, |stop| {
         let kinds = Kind::all().iter().collect();
-        let (logs, _, mut notes) = read(columns, &device, &parameters, kinds, false)?;
+        let (logs, _, said) = read(columns, &device, &parameters, kinds, false)?;
+        notes.extend(said);
         let settings = Settings {
             device: &device,
             is_known,
@@ -125,14 +137,15 @@ pub(crate) fn tune_logs(
     presets: Option<PathBuf>,
     device: Option<DeviceFile>,
 ) -> PyResult<(String, Vec<LogRow>, Vec<String>)> {
-    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    let (device, mut notes) = device_of_logs(device.as_ref(), counts_per_rev, &logs)?;
     let before = of_presets(presets.as_ref(), "", &Named::new()).map_err(value_error)?;
     let kinds = tunable(&estimators).map_err(value_error)?;
     let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
     let columns = columns?;
     interruptible(py, |stop| {
         let are_named = !estimators.is_empty();
-        let (logs, kinds, notes) = read(columns, &device, &before, kinds, are_named)?;
+        let (logs, kinds, said) = read(columns, &device, &before, kinds, are_named)?;
+        notes.extend(said);
         let logs = logs.into_iter().map(|(name, recording)| {
             let sum = String::new();
             (LogFile { name, sum }, recording)

@@ -11,7 +11,7 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::columns::Columns;
-use crate::device::{Built, DeviceFile, Named, device, parameters as of_presets};
+use crate::device::{Built, DeviceFile, Named, device_of, parameters as of_presets};
 use crate::error::{in_python, value_error};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
@@ -37,18 +37,18 @@ pub(crate) fn replay<'py>(
     device: Option<DeviceFile>,
     resample: Option<f64>,
 ) -> PyResult<Replayed<'py>> {
-    let counts_per_rev = counts_per_rev.or(match device {
-        None => recording.counts_per_rev,
-        Some(_) => None,
-    });
-    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
     let name = recording.name.clone();
+    let stated = [(name.as_str(), recording.counts_per_rev)];
+    let (device, differing) =
+        device_of(device.as_ref(), counts_per_rev, &stated).map_err(value_error)?;
     let unchecked = recording.copy()?;
     let (reports, built, recording, notes) = py.detach(|| {
         let recording = unchecked.recording().map_err(value_error)?;
         let of_user = || of_presets(presets.as_ref(), estimator, &parameters);
         let prepared = prepared(recording, &name, &device, resample, estimator, of_user);
-        let (recording, mut notes) = prepared.map_err(value_error)?;
+        let (recording, said) = prepared.map_err(value_error)?;
+        let mut notes = differing;
+        notes.extend(said);
         let rate_hz = recording.trace.rate_hz;
         let built = Built::new(estimator, &device, rate_hz, presets.as_ref(), &parameters);
         let built = built.map_err(value_error)?;

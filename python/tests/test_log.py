@@ -124,3 +124,38 @@ def test_wrong_options_are_refused(data):
         with pytest.raises(ValueError) as error:
             limpid.read_log(own, **options)
         assert said in str(error.value)
+
+
+def test_device_without_counts_leaves_those_that_the_log_states(tmp_path):
+    path = tmp_path / "stated.csv"
+    path.write_text("# counts_per_rev = 90\nt,counts_large\n" + "".join(f"{k / 1000},{k // 2}\n" for k in range(5000)))
+    inertia = {"large": {"inertia_kg_m2": 2e-5}}
+    counts = {"large": {"counts_per_rev": 4096}}
+    log = limpid.read_log(path)
+    assert log.counts_per_rev == limpid.read_log(path, device=inertia).counts_per_rev == 90
+    fast = limpid.replay(log, estimator="finite-difference").velocity.max()
+    replayed = limpid.replay(log, estimator="finite-difference", device=inertia)
+    assert replayed.velocity.max() == fast == pytest.approx(2 * np.pi / 90 * 1000)
+    assert replayed.notes == []
+
+    # A device that states them, and the argument, are used, with a note.
+    for options, source in (({"device": counts}, "device"), ({"counts_per_rev": 4096}, "counts_per_rev")):
+        said = f"stated.csv: 4096 counts/rev of {source} are used; the recording states 90"
+        replayed = limpid.replay(log, estimator="finite-difference", **options)
+        assert replayed.velocity.max() == pytest.approx(fast * 90 / 4096)
+        assert replayed.notes == [said]
+        assert said in limpid.recommend(log, **options).notes
+        assert said in limpid.tune(log, estimators="low-pass", **options).notes
+        assert limpid.read_log(path, **options).notes[0] == said
+        assert limpid.read_log(path, **options).counts_per_rev == 4096
+    for found in (limpid.recommend(log, device=inertia), limpid.tune(log, estimators="low-pass", device=inertia)):
+        assert not any("counts/rev" in note for note in found.notes)
+
+
+def test_logs_of_different_encoders_are_refused():
+    logs = [limpid.Recording(np.arange(5000), 1000, counts_per_rev=counts, name=str(counts)) for counts in (90, None)]
+    inertia = {"large": {"inertia_kg_m2": 2e-5}}
+    for device in (None, inertia):
+        with pytest.raises(ValueError, match="logs: 90 and None state different counts per revolution, 90 and none"):
+            limpid.recommend(logs, device=device)
+    limpid.recommend(logs, counts_per_rev=90)

@@ -204,6 +204,14 @@ impl Device {
         Self::from_toml_str(&text).map_err(|error| format!("{}: {error}", path.display()))
     }
 
+    /// Whether the text of a device file states the counts per revolution of the large encoder.
+    #[must_use]
+    pub fn states_counts(text: &str) -> bool {
+        let table = text.parse::<toml::Table>();
+        let large = table.ok().and_then(|mut table| table.remove("large"));
+        large.is_some_and(|large| large.get("counts_per_rev").is_some())
+    }
+
     /// Checks that every value is possible, and that the plant's step is short enough for it.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub fn counts_per_rev() -> RangedI64ValueParser<u32> {
 /// A line on counts per revolution of `source` that are `used` where a recording has `stated` others.
 #[must_use]
 pub fn differing_counts(used: u32, source: &str, stated: u32) -> String {
-    format!("{used} counts/rev of {source} are used; the file states {stated}")
+    format!("{used} counts/rev of {source} are used; the recording states {stated}")
 }
 
 /// The device file of a command.
@@ -36,8 +36,8 @@ pub struct DeviceFile {
 /// The encoder of a recording: a group of its own, because `export --c` takes it without a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Args)]
 pub struct EncoderOptions {
-    /// Counts per revolution of the encoder: four times its lines [default: as the recording states
-    /// them, or those of the device]
+    /// Counts per revolution of the encoder: four times its lines [default: those in the device file,
+    /// or as the recording states them]
     #[arg(long, value_name = "N", value_parser = counts_per_rev())]
     pub counts_per_rev: Option<u32>,
 }
@@ -87,6 +87,17 @@ pub struct Whole {
     pub stated: Vec<String>,
 }
 
+/// The device of recordings.
+#[derive(Clone, Debug)]
+pub struct Counted {
+    /// The device, with the counts per revolution of the recordings.
+    pub device: Device,
+    /// Whether the recordings state these counts, and nothing else does.
+    pub is_stated: bool,
+    /// A line for each recording that states its counts per revolution.
+    pub lines: Vec<String>,
+}
+
 impl ColumnOptions {
     /// What the options say about the log of `device`.
     ///
@@ -114,18 +125,22 @@ impl RecordingOptions {
         self.resample.is_none()
     }
 
-    /// `device`, as loaded from `file`, with the counts per revolution of the recordings, as
-    /// [`DeviceFile::with_stated_counts`].
+    /// The device of `file` with the counts per revolution of the recordings.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names the recording.
-    pub fn counted(
-        &self,
-        file: &DeviceFile,
-        device: Device,
-        logs: &[Log],
-    ) -> Result<(Device, Vec<String>), Failure> {
-        file.with_stated_counts(device, logs, self.encoder.counts_per_rev)
+    /// [`Failure::Input`] that names the device file or the recording.
+    pub fn counted(&self, file: &DeviceFile, logs: &[Log]) -> Result<Counted, Failure> {
+        let text = file.text()?;
+        let mut device = file.device(&text)?;
+        let name = file.name();
+        let known = match self.encoder.counts_per_rev {
+            Some(given) => {
+                device.stages.large.counts_per_rev = given;
+                Some("the options")
+            }
+            None => Device::states_counts(&text).then_some(&*name),
+        };
+        Counted::new(device, known, logs)
     }
 
     /// Checks that no option is given, for a command without a recording, which `give` tells to give.
@@ -170,7 +185,7 @@ impl RecordingOptions {
     /// # Errors
     /// [`Failure::Input`] that names the file, its line and its column, or the option.
     pub fn whole(&self, log: &Log, file: &DeviceFile) -> Result<Whole, Failure> {
-        let (device, stated) = self.counted(file, file.load()?, std::slice::from_ref(log))?;
+        let Counted { device, lines, .. } = self.counted(file, std::slice::from_ref(log))?;
         let recording = self.read(log, &device)?;
         recording.check_times(log.name())?;
         // Rows of another rate are not those of the board.
@@ -182,7 +197,7 @@ impl RecordingOptions {
             recording,
             board,
             device,
-            stated,
+            stated: lines,
         })
     }
 
@@ -195,6 +210,59 @@ impl RecordingOptions {
         let options = self.columns.options(device)?;
         let survey = Survey::new(log.reader()?, log.name(), &options, self.resample)?;
         Ok((options, survey))
+    }
+}
+
+impl Counted {
+    /// `device` for recordings. `known` names the option or the file that gives its counts per revolution;
+    /// without it the device has those that the recordings state.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the recording whose counts differ from those of the first one, or
+    /// that does not state them.
+    pub fn new(mut device: Device, known: Option<&str>, logs: &[Log]) -> Result<Self, Failure> {
+        let counts = &mut device.stages.large.counts_per_rev;
+        let assumed = *counts;
+        let mut unstated: Option<&str> = None;
+        let mut lines = Vec::new();
+        let mut first: Option<&str> = None;
+        for log in logs {
+            let Some(stated) = stated_counts_per_rev(&log.head()?, log.name())? else {
+                unstated = unstated.or(Some(log.name()));
+                continue;
+            };
+            let name = short_name(log.path());
+            match (known, first) {
+                (Some(_), _) if stated == *counts => {}
+                (Some(source), _) => lines.push(format!(
+                    "{name}: {}",
+                    differing_counts(*counts, source, stated)
+                )),
+                (None, Some(first)) if stated != *counts => {
+                    return Err(Failure::Input(format!(
+                        "{}: states {stated} counts/rev and {first} {counts}; give recordings of one \
+                         encoder, or the counts with --counts-per-rev",
+                        log.name()
+                    )));
+                }
+                (None, _) => {
+                    *counts = stated;
+                    first = first.or(Some(log.name()));
+                    lines.push(format!("{name}: {stated} counts/rev, as the file states"));
+                }
+            }
+        }
+        match (first, unstated) {
+            (Some(first), Some(other)) if *counts != assumed => Err(Failure::Input(format!(
+                "{first}: states {counts} counts/rev and {other} none; give the counts of both with \
+                 --counts-per-rev"
+            ))),
+            _ => Ok(Self {
+                is_stated: first.is_some(),
+                device,
+                lines,
+            }),
+        }
     }
 }
 
@@ -216,66 +284,14 @@ impl DeviceFile {
     /// # Errors
     /// [`Failure::Input`] that names the file and the key.
     pub fn load(&self) -> Result<Device, Failure> {
-        let name = self.device.as_deref().unwrap_or(Path::new(""));
-        Device::from_toml_str(&self.text()?)
-            .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
+        self.device(&self.text()?)
     }
 
-    /// `device`, as loaded, for recordings, and a line for each one that states its counts per
-    /// revolution. Without a device file, and without `counts_per_rev` of an option, the device has
-    /// these counts.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] that names the recording whose counts differ from those of the first one, or
-    /// that does not state them.
-    pub fn with_stated_counts(
-        &self,
-        mut device: Device,
-        logs: &[Log],
-        counts_per_rev: Option<u32>,
-    ) -> Result<(Device, Vec<String>), Failure> {
-        let counts = &mut device.stages.large.counts_per_rev;
-        let assumed = *counts;
-        let mut unstated: Option<&str> = None;
-        let mut is_known = self.is_given();
-        if let Some(given) = counts_per_rev {
-            (*counts, is_known) = (given, true);
-        }
-        let mut lines = Vec::new();
-        let mut first: Option<&str> = None;
-        for log in logs {
-            let Some(stated) = stated_counts_per_rev(&log.head()?, log.name())? else {
-                unstated = unstated.or(Some(log.name()));
-                continue;
-            };
-            let name = short_name(log.path());
-            match first {
-                _ if is_known && stated == *counts => {}
-                _ if is_known => lines.push(format!(
-                    "{name}: {}",
-                    differing_counts(*counts, "the options", stated)
-                )),
-                Some(first) if stated != *counts => {
-                    return Err(Failure::Input(format!(
-                        "{}: states {stated} counts/rev and {first} {counts}; give recordings of one \
-                         encoder, or the counts with --counts-per-rev",
-                        log.name()
-                    )));
-                }
-                _ => {
-                    *counts = stated;
-                    first = first.or(Some(log.name()));
-                    lines.push(format!("{name}: {stated} counts/rev, as the file states"));
-                }
-            }
-        }
-        match (first, unstated) {
-            (Some(first), Some(other)) if *counts != assumed => Err(Failure::Input(format!(
-                "{first}: states {counts} counts/rev and {other} none; give the counts of both with \
-                 --counts-per-rev"
-            ))),
-            _ => Ok((device, lines)),
-        }
+    /// The device of the file's text.
+    fn device(&self, text: &str) -> Result<Device, Failure> {
+        let name = self.device.as_deref().unwrap_or(Path::new(""));
+        Device::from_toml_str(text)
+            .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
     }
 
     /// Whether a file was given.

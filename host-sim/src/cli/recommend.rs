@@ -65,11 +65,11 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         let what = "LOG -: standard input can be read once; give - once";
         return Err(Failure::Input(what.to_owned()));
     }
-    let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let logs = options.logs.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let (device, stated) = options.recording.counted(&options.device, device, &logs)?;
+    let counted = options.recording.counted(&options.device, &logs)?;
+    let device = counted.device;
     let read = |log: &Log| -> Result<(String, Recording), Failure> {
         let recording = options.recording.read(log, &device)?;
         recording.check_times(log.name())?;
@@ -88,7 +88,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
     bar.finish_and_clear();
 
     let counts_per_rev = device.stages.large.counts_per_rev;
-    let mut notes = stated;
+    let mut notes = counted.lines;
     if notes.is_empty()
         && options.recording.encoder.counts_per_rev.is_none()
         && !options.device.is_given()

@@ -73,12 +73,12 @@ pub(super) enum ReferenceUse {
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
     let kinds = kinds(&options.estimators)?;
-    let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let name = short_name(&options.trace);
     let log = Log::open(&options.trace)?;
     let logs = std::slice::from_ref(&log);
-    let (device, stated) = options.recording.counted(&options.device, device, logs)?;
+    let counted = options.recording.counted(&options.device, logs)?;
+    let device = counted.device;
     let (read, survey) = options.recording.survey(&log, &device)?;
     survey.check_times(log.name())?;
     let recorded = Recorded {
@@ -148,7 +148,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         left_out: &run.left_out,
         mismatched_presets: &run.mismatched_presets,
     };
-    for line in &stated {
+    for line in &counted.lines {
         note(line);
     }
     about.note(&name);
@@ -157,7 +157,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     }
     let counts_of = match options.recording.encoder.counts_per_rev {
         Some(_) => "of --counts-per-rev; ",
-        None if !stated.is_empty() && !options.device.is_given() => "of the file; ",
+        None if counted.is_stated => "of the file; ",
         None => "",
     };
     let device_name = match options.device.is_given() {

@@ -205,10 +205,10 @@ fn write(
 
 /// The searches on recordings.
 fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Failure> {
-    let device = options.device.load()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let (device, mut notes) = options.read.counted(&options.device, device, &logs)?;
+    let counted = options.read.counted(&options.device, &logs)?;
+    let (device, mut notes) = (counted.device, counted.lines);
     let parameters = Parameters::default();
     let mut recordings = Vec::new();
     for log in &logs {

@@ -39,14 +39,25 @@ fn counts_per_revolution_of_a_coarsened_recording_need_no_option() {
     folder.write("d.toml", "large.counts_per_rev = 500\n");
     let with_device = velocity("replay c.csv --estimator m-over-t --device d.toml");
     assert!((with_device - 10.0).abs() < 0.1, "{with_device}");
+    folder.write("i.toml", "large.inertia_kg_m2 = 2e-5\n");
+    let without_counts = velocity("replay c.csv --estimator m-over-t --device i.toml");
+    assert!((without_counts - 5.0).abs() < 0.05, "{without_counts}");
     for (command, said) in [
+        (
+            "replay c.csv --estimator pll --device i.toml",
+            "c.csv: 1000 counts/rev, as the file states",
+        ),
+        (
+            "replay c.csv --estimator pll --device d.toml --counts-per-rev 250",
+            "250 counts/rev of the options are used; the recording states 1000",
+        ),
         (
             "replay c.csv --estimator pll",
             "c.csv: 1000 counts/rev, as the file states",
         ),
         (
             "replay c.csv --estimator pll --device d.toml",
-            "500 counts/rev of the options are used; the file states 1000",
+            "500 counts/rev of d.toml are used; the recording states 1000",
         ),
         (
             "plot c.csv --out p.svg",
@@ -286,13 +297,13 @@ fn fine_counts_that_differ_from_the_stated_ones_are_reported() {
         assert_eq!(output.status.code(), Some(0));
         String::from_utf8(output.stderr).unwrap()
     };
-    let said = "f.csv: 32768 counts/rev of the options are used; the file states 65536\n";
+    let said = "f.csv: 32768 counts/rev of the options are used; the recording states 65536\n";
     assert_eq!(notes("--fine-counts-per-rev 32768"), said);
     assert_eq!(notes("--fine-counts-per-rev 65536"), "");
     assert_eq!(notes(""), "");
     let list = "[[recording]]\nfile = 'f.csv'\nwhat = 'x'\nkind = 'fine'\ncounts_per_rev = 32768\n";
     folder.write("recordings.toml", list);
-    let said = "f.csv: 32768 counts/rev of recordings.toml are used; the file states 65536\n";
+    let said = "f.csv: 32768 counts/rev of recordings.toml are used; the recording states 65536\n";
     assert_eq!(notes(""), said);
 }
 
