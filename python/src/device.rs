@@ -52,13 +52,18 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
 }
 
 /// The table of a device file with the content of a dict; `within` is the name of the section and a full
-/// stop.
+/// stop. A section has no sections: a dict may have itself as a value.
 fn table(dict: &Bound<'_, PyDict>, within: &str) -> PyResult<toml::Table> {
     let mut table = toml::Table::new();
     for (key, value) in dict.iter() {
         let wrong = |what: &str| PyTypeError::new_err(format!("device: {within}{key}: {what}"));
         let name: String = key.extract().map_err(|_| wrong("a key must be a str"))?;
         let value = if let Ok(section) = value.cast::<PyDict>() {
+            if !within.is_empty() {
+                return Err(value_error(format!(
+                    "device: {within}{key}: is a section in a section; give a number"
+                )));
+            }
             toml::Value::Table(self::table(section, &format!("{within}{name}."))?)
         } else if let Ok(text) = value.extract::<String>() {
             toml::Value::String(text)

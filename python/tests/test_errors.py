@@ -149,11 +149,20 @@ def test_missing_files_are_os_errors(tmp_path):
         ({"large": {"inertia_kg_m2": float("nan")}}, ValueError, "inertia"),
         ({"large": {"inertia": 1}}, ValueError, "inertia"),
         ({"large": 1}, ValueError, "large"),
+        ({"large": {"inertia_kg_m2": {"x": 1}}}, ValueError, r"large\.inertia_kg_m2: is a section in a section"),
     ],
 )
 def test_device_that_is_wrong_is_named(sections, error, names):
     with pytest.raises(error, match=names):
         limpid.device(sections)
+
+
+def test_device_that_has_itself_is_refused():
+    sections: dict = {}
+    sections["large"] = sections
+    for call in (limpid.device, lambda device: limpid.replay([1, 2], 1000, device=device)):
+        with pytest.raises(ValueError, match=r"device: large\.large: is a section in a section; give a number"):
+            call(sections)
 
 
 def test_device_takes_numbers_of_numpy():
