@@ -253,6 +253,8 @@ def _logs(logs: Recording | Iterable[Recording]) -> list[Recording]:
     recordings = [logs] if isinstance(logs, Recording) else list(logs)
     if not recordings or not all(isinstance(log, Recording) for log in recordings):
         raise ValueError("logs: pass a limpid.Recording or several, for example limpid.read_log('motor.csv')")
+    for recording in recordings:
+        recording._check()
     return recordings
 
 

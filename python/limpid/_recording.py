@@ -58,39 +58,47 @@ class Recording:
         name: str = "recording",
         notes: Sequence[str] = (),
     ) -> None:
-        columns = _arrays.rows(counts, coupled, current, edge_age, edge_boundary)
-        self.counts: NDArray[np.uint32] = columns["counts"]
-        self.coupled: NDArray[np.uint32] | None = columns["coupled"]
-        self.current: NDArray[np.float64] | None = columns["current"]
-        self.edge_age: NDArray[np.float64] | None = columns["edge_age"]
-        self.edge_boundary: NDArray[np.uint32] | None = columns["edge_boundary"]
-        self.true_velocity: NDArray[np.float64] | None = (
-            None if true_velocity is None else _arrays.as_floats(true_velocity, "true_velocity", "rad/s")
-        )
-        self.current_small: NDArray[np.float64] | None = (
-            None if current_small is None else _arrays.as_floats(current_small, "current_small", "A")
-        )
-        self._t: NDArray[np.float64] | None = None if t is None else _arrays.as_floats(t, "t", "s")
-        _arrays.same_rows(
-            {
-                "counts": self.counts,
-                "t": self._t,
-                "true_velocity": self.true_velocity,
-                "current_small": self.current_small,
-            }
-        )
+        self.counts: NDArray[np.uint32] = counts
+        self.coupled: NDArray[np.uint32] | None = coupled
+        self.current: NDArray[np.float64] | None = current
+        self.edge_age: NDArray[np.float64] | None = edge_age
+        self.edge_boundary: NDArray[np.uint32] | None = edge_boundary
+        self.true_velocity: NDArray[np.float64] | None = true_velocity
+        self.current_small: NDArray[np.float64] | None = current_small
+        self._t: NDArray[np.float64] | None = t
         self.name = name
         self.notes = list(notes)
         self.counts_per_rev = counts_per_rev
+        self._check_columns()
         if (rate is None) == (self._t is None):
             raise ValueError("rate and t: pass one of them: the rate of the rows (Hz), or the time of each row (s)")
         if self._t is not None:
-            self.rate = _limpid.clock(self._t, name)
-        else:
-            assert rate is not None
-            if not (rate > 0 and np.isfinite(rate)):
-                raise ValueError(f"rate={rate}: must be positive and finite (Hz)")
-            self.rate = float(rate)
+            rate = _limpid.clock(self._t, name)
+        assert rate is not None
+        self.rate = rate
+        self._check_rate()
+
+    def _check(self) -> None:
+        """Checks the attributes, some of which a user may have replaced."""
+        self._check_columns()
+        self._check_rate()
+
+    def _check_columns(self) -> None:
+        columns = _arrays.rows(self.counts, self.coupled, self.current, self.edge_age, self.edge_boundary)
+        for name, column, unit in (
+            ("true_velocity", self.true_velocity, "rad/s"),
+            ("current_small", self.current_small, "A"),
+            ("t", self._t, "s"),
+        ):
+            columns[name] = None if column is None else _arrays.as_floats(column, name, unit)
+        _arrays.same_rows(columns)
+        self._t = columns.pop("t")
+        vars(self).update(columns)
+
+    def _check_rate(self) -> None:
+        if not (self.rate > 0 and np.isfinite(self.rate)):
+            raise ValueError(f"rate={self.rate}: must be positive and finite (Hz)")
+        self.rate = float(self.rate)
 
     @property
     def t(self) -> NDArray[np.float64]:

@@ -98,6 +98,7 @@ def replay(
         if any(argument is not None for argument in given):
             raise ValueError("rate, t, current, coupled, edge_age, edge_boundary: the recording has its own; leave them out")
         recording = counts
+        recording._check()
     else:
         recording = Recording(
             counts,

@@ -8,7 +8,7 @@ use terminal::failure::Failure;
 
 use crate::error::value_error;
 
-/// The arrays of a `limpid.Recording`, which has checked their types and lengths. The attribute `_t` is
+/// The arrays of a `limpid.Recording`, which checks their types and lengths before each call. The attribute `_t` is
 /// `None` for rows at a constant rate.
 #[derive(FromPyObject)]
 pub(crate) struct Columns<'py> {

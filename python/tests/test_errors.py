@@ -73,6 +73,39 @@ def test_estimator_that_needs_a_constant_period_is_refused_on_uneven_rows():
     assert "or name one of finite-difference" in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("attribute", "value", "said"),
+    [
+        ("current", CURRENT[:50], "current: has 50 rows where counts has 100"),
+        ("current", np.r_[CURRENT[:99], np.nan], "current: row 99 is nan"),
+        ("current", ["x"] * 100, "current: has the type"),
+        ("counts", COUNTS[:50], "has 100 rows where counts has 50"),
+        ("true_velocity", CURRENT[:50], "true_velocity: has 50 rows"),
+        ("edge_age", CURRENT, "edge_age and edge_boundary: pass both or neither"),
+        ("rate", -1.0, "rate=-1.0: must be positive"),
+    ],
+)
+def test_attribute_that_is_replaced_is_checked_again(attribute, value, said):
+    recording = limpid.Recording(COUNTS, 1000, current=CURRENT, true_velocity=CURRENT)
+    setattr(recording, attribute, value)
+    for call in (lambda log: limpid.replay(log, estimator="imm-motor"), limpid.recommend, limpid.tune):
+        with pytest.raises(ValueError) as error:
+            call(recording)
+        assert said in str(error.value)
+    # In place, too.
+    recording = limpid.Recording(COUNTS, 1000, current=CURRENT.copy())
+    recording.current[7] = np.inf
+    with pytest.raises(ValueError, match="current: row 7 is inf"):
+        limpid.replay(recording)
+
+
+def test_attributes_are_replaced_by_other_types():
+    recording = limpid.Recording(COUNTS, 1000)
+    recording.counts = 2 * COUNTS
+    expected = limpid.replay(2 * COUNTS, 1000).velocity
+    np.testing.assert_array_equal(limpid.replay(recording).velocity, expected)
+
+
 def test_recording_has_its_own_columns():
     recording = limpid.Recording(COUNTS, 1000)
     with pytest.raises(ValueError, match="the recording has its own"):
