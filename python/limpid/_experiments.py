@@ -23,8 +23,8 @@ def simulate(
     rate: float = 10_000.0,
     seconds: float | None = None,
     seed: int = 1,
-    hand: str = "still",
-    every: int = 1,
+    hand: str | None = None,
+    every: int | None = None,
     counts_per_rev: int | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Recording:
@@ -43,9 +43,9 @@ def simulate(
     seed
         Seed of all random numbers.
     hand
-        Load on the handle in a scene: ``still``, ``clamp``, ``nobody`` or ``moving``.
+        Load on the handle in a scene: ``still``, ``clamp``, ``nobody`` or ``moving`` [default: still].
     every
-        Keep only every N-th tick of a scene, 1 to 1000.
+        Keep only every N-th tick of a scene, 1 to 1000 [default: 1].
     counts_per_rev
         Counts per revolution of the large encoder [default: those of the device].
     device
@@ -53,6 +53,10 @@ def simulate(
     """
     if scenario is not None and scene is not None:
         raise ValueError("scenario and scene: pass one of them")
+    if scenario is not None and not (hand is None and every is None):
+        raise ValueError("hand and every: are of a scene; leave them out, or pass a scene in place of the scenario")
+    hand = "still" if hand is None else hand
+    every = 1 if every is None else every
     fields = _limpid.simulate(scenario, scene, rate, seconds, seed, hand, every, counts_per_rev, device)
     if every == 1:
         # The rate is known: the times say it less exactly.
