@@ -1,14 +1,13 @@
 //! Lists of what the names of arguments can be.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use catalogue::estimators::Kind;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use simulation::scenario::ScenarioName;
 
-use crate::device::{Built, DeviceFile, Named, device as of_file};
+use crate::device::{Built, DeviceFile, Named, PresetsFile, device as of_file};
 use crate::error::value_error;
 
 /// The rows of the catalogue, as keywords of `limpid.EstimatorInfo`.
@@ -49,7 +48,7 @@ pub(crate) fn parameters(
     estimator: &str,
     rate: f64,
     counts_per_rev: Option<u32>,
-    presets: Option<PathBuf>,
+    presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
 ) -> PyResult<BTreeMap<&'static str, f64>> {
     let device = of_file(device.as_ref(), counts_per_rev).map_err(value_error)?;

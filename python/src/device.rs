@@ -12,7 +12,7 @@ use recordings::arguments::differing_counts;
 use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
-use crate::error::{os_error, value_error};
+use crate::error::{check_file, os_error, value_error};
 
 /// A device file: its path, or a mapping with its sections and keys.
 pub(crate) struct DeviceFile {
@@ -48,6 +48,21 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
             text,
             has_lines: true,
         })
+    }
+}
+
+/// The path of a presets file that can be opened.
+pub(crate) struct PresetsFile(PathBuf);
+
+impl<'py> FromPyObject<'_, 'py> for PresetsFile {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let path: PathBuf = object
+            .extract()
+            .map_err(|_| PyTypeError::new_err("presets: give the path of a presets file"))?;
+        check_file(object.py(), &path)?;
+        Ok(Self(path))
     }
 }
 
@@ -183,12 +198,12 @@ pub(crate) struct Built {
 
 /// The parameters of a presets file and those set by name.
 pub(crate) fn parameters(
-    presets: Option<&PathBuf>,
+    presets: Option<&PresetsFile>,
     estimator: &str,
     named: &Named,
 ) -> Result<Parameters, Failure> {
     let mut parameters = Parameters::default();
-    if let Some(path) = presets {
+    if let Some(PresetsFile(path)) = presets {
         parameters.layer(catalogue::parameters::read(path)?);
     }
     for (name, value) in named {
@@ -203,7 +218,7 @@ impl Built {
         name: &str,
         device: &Device,
         rate_hz: f64,
-        presets: Option<&PathBuf>,
+        presets: Option<&PresetsFile>,
         named: &Named,
     ) -> Result<Self, Failure> {
         let kind = Kind::named(name)?;

@@ -1,6 +1,7 @@
 //! Failures of the crates as exceptions.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -26,6 +27,55 @@ pub(crate) fn os_error(py: Python<'_>, error: io::Error, path: &Path) -> PyErr {
     built().map_or_else(|failed| failed, PyErr::from_value)
 }
 
+/// A note on the counts of arrays: `replay` and `Recording` have no modulus.
+pub(crate) fn of_arrays(note: &str) -> String {
+    let unwrapped = |note: String, column: &str, argument: &str| {
+        let option = format!("--modulus {column}=");
+        match note.split_once(&option) {
+            None => note,
+            Some((before, value)) => {
+                let (period, after) = value.split_at(value_end(value));
+                let unwrapped = format!("numpy.unwrap({argument}.astype(int), period={period})");
+                format!("{before}{argument}={unwrapped}{after}")
+            }
+        }
+    };
+    let note = unwrapped(note.to_owned(), "counts_large", "counts");
+    in_python(&unwrapped(note, "counts_small", "coupled"))
+}
+
+/// Where a number or a name at the begin of `text` ends.
+fn value_end(text: &str) -> usize {
+    text.find(|c: char| !c.is_ascii_alphanumeric())
+        .unwrap_or(text.len())
+}
+
+/// The modulus of a column, `counts_small=4096`, as a dict, and the text behind it.
+fn modulus(value: &str) -> Option<(String, &str)> {
+    let (column, rest) = value.split_once('=')?;
+    if !["counts_large", "counts_small"].contains(&column) {
+        return None;
+    }
+    let (number, after) = rest.split_at(value_end(rest));
+    Some((format!("{{'{column}': {number}}}"), after))
+}
+
+/// Checks that a file can be opened; otherwise the `OSError` of Python. A pipe is not opened twice.
+pub(crate) fn check_file(py: Python<'_>, path: &Path) -> PyResult<()> {
+    let opened = || -> io::Result<()> {
+        let metadata = std::fs::metadata(path)?;
+        if metadata.is_dir() {
+            // A folder is opened, and refused as one when it is read.
+            File::open(path)?.read_exact(&mut [0])?;
+        }
+        if metadata.is_file() {
+            File::open(path)?;
+        }
+        Ok(())
+    };
+    opened().map_err(|error| os_error(py, error, path))
+}
+
 /// A message for the command line with keywords of this package instead of options:
 /// `--resample 1000` is `resample=1000`.
 pub(crate) fn in_python(message: &str) -> String {
@@ -44,6 +94,13 @@ pub(crate) fn in_python(message: &str) -> String {
             _ => name.replace('-', "_"),
         });
         text.push('=');
+        if name == "modulus"
+            && let Some((dict, after)) = after.strip_prefix(' ').and_then(modulus)
+        {
+            text.push_str(&dict);
+            rest = after;
+            continue;
+        }
         // The value of an option follows after a space or an equals sign; other words do not.
         let value = after.strip_prefix([' ', '=']);
         let is_value = |value: &&str| {

@@ -1,7 +1,6 @@
 //! An estimator that takes rows one by one or in blocks.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Mutex;
 
 use catalogue::estimators::{Estimator as AnyEstimator, Kind, Reports};
@@ -15,7 +14,7 @@ use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 use crate::columns::{copied, edge, edges};
-use crate::device::{Built, DeviceFile, Named, device};
+use crate::device::{Built, DeviceFile, Named, PresetsFile, device};
 use crate::error::{in_python, value_error};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
@@ -149,7 +148,7 @@ impl Estimator {
         rate: f64,
         counts_per_rev: Option<u32>,
         parameters: Option<Named>,
-        presets: Option<PathBuf>,
+        presets: Option<PresetsFile>,
         device: Option<DeviceFile>,
         modulus: Option<u32>,
         varying: bool,

@@ -11,7 +11,7 @@ use recordings::recording::Recording;
 use terminal::failure::Failure;
 
 use crate::device::{DeviceFile, counts_source, device};
-use crate::error::{in_python, os_error, value_error};
+use crate::error::{check_file, in_python, value_error};
 
 /// Reads a log; the keywords of `limpid.Recording`.
 #[pyfunction]
@@ -37,7 +37,7 @@ pub(crate) fn read_log<'py>(
     };
     let source = counts_source(device.as_ref(), counts_per_rev);
     let of_file = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
-    std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
+    check_file(py, &path)?;
     let read = py.detach(|| -> Result<_, Failure> {
         let log = Log::open(&path)?;
         let Counted { device, lines, .. } =

@@ -1,7 +1,6 @@
 //! Experiments over recordings in memory: a recommendation, and tuned parameters.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind, Presets};
@@ -17,8 +16,8 @@ use terminal::failure::Failure;
 
 use crate::background::interruptible;
 use crate::columns::{Columns, Unchecked};
-use crate::device::{DeviceFile, Named, device, device_of, parameters as of_presets};
-use crate::error::{in_python, value_error};
+use crate::device::{DeviceFile, Named, PresetsFile, device, device_of, parameters as of_presets};
+use crate::error::{of_arrays, value_error};
 
 /// The device for these recordings, and what is said about their counts per revolution.
 fn device_of_logs(
@@ -79,7 +78,7 @@ fn tunable(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
 }
 
 fn in_words_of_python(notes: &[String]) -> Vec<String> {
-    notes.iter().map(|note| in_python(note)).collect()
+    notes.iter().map(|note| of_arrays(note)).collect()
 }
 
 /// The ranking as JSON, the lines of Rust, and the notes.
@@ -90,7 +89,7 @@ pub(crate) fn recommend(
     logs: Vec<Columns<'_>>,
     instructions: f64,
     counts_per_rev: Option<u32>,
-    presets: Option<PathBuf>,
+    presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
 ) -> PyResult<(String, String, Vec<String>)> {
     let is_known = device.is_some();
@@ -134,7 +133,7 @@ pub(crate) fn tune_logs(
     logs: Vec<Columns<'_>>,
     estimators: Vec<String>,
     counts_per_rev: Option<u32>,
-    presets: Option<PathBuf>,
+    presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
 ) -> PyResult<(String, Vec<LogRow>, Vec<String>)> {
     let (device, mut notes) = device_of_logs(device.as_ref(), counts_per_rev, &logs)?;

@@ -1,7 +1,6 @@
 //! One estimator over a whole recording.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use catalogue::parameters::Parameters;
 use experiments::uneven::{Chosen, Recorded};
@@ -11,8 +10,8 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::columns::Columns;
-use crate::device::{Built, DeviceFile, Named, device_of, parameters as of_presets};
-use crate::error::{in_python, value_error};
+use crate::device::{Built, DeviceFile, Named, PresetsFile, device_of, parameters as of_presets};
+use crate::error::{of_arrays, value_error};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
 /// The arrays, the times if the rows were replaced, the rate, the parameters and the notes.
@@ -33,7 +32,7 @@ pub(crate) fn replay<'py>(
     estimator: &str,
     counts_per_rev: Option<u32>,
     parameters: Named,
-    presets: Option<PathBuf>,
+    presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
     resample: Option<f64>,
 ) -> PyResult<Replayed<'py>> {
@@ -64,7 +63,7 @@ pub(crate) fn replay<'py>(
         resample.map(|_| recording.t),
         recording.trace.rate_hz,
         built.named(),
-        notes.iter().map(|note| in_python(note)).collect(),
+        notes.iter().map(|note| of_arrays(note)).collect(),
     ))
 }
 

@@ -14,7 +14,7 @@ use terminal::failure::Failure;
 
 use crate::background::interruptible;
 use crate::device::{DeviceFile, device};
-use crate::error::{in_python, os_error, value_error};
+use crate::error::{check_file, in_python, value_error};
 use crate::log::fields;
 
 /// The load on the handle that `name` means.
@@ -86,7 +86,7 @@ pub(crate) fn coarsen<'py>(
     device: Option<DeviceFile>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let device = self::device(device.as_ref(), Some(counts_per_rev)).map_err(value_error)?;
-    std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
+    check_file(py, &path)?;
     let wanted = Wanted {
         counts_per_rev,
         fine_counts_per_rev,
@@ -121,7 +121,7 @@ pub(crate) fn decode<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     // In the range of a device.
     device(None, counts_per_rev).map_err(value_error)?;
-    std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
+    check_file(py, &path)?;
     let mut recording = interruptible(py, |_| {
         let capture = Capture::new(&columns, lines, row_rate, checked_rate(rate)?)?;
         let log = Log::open(&path)?;

@@ -163,13 +163,23 @@ def test_missing_files_are_os_errors(tmp_path):
         ("nothing.csv", lambda path: limpid.coarsen(path, 1024)),
         ("nothing.csv", limpid.decode),
         ("nothing.toml", limpid.device),
+        ("nothing.toml", lambda path: replay(presets=path)),
+        ("nothing.toml", lambda path: limpid.Estimator(presets=path)),
+        ("nothing.toml", lambda path: limpid.parameters("imm", 1000, presets=path)),
+        ("nothing.toml", lambda path: limpid.recommend(limpid.Recording(COUNTS, 1000), presets=path)),
+        ("nothing.toml", lambda path: limpid.tune(limpid.Recording(COUNTS, 1000), presets=path)),
     ):
         with pytest.raises(FileNotFoundError) as error:
             read(tmp_path / name)
         assert error.value.filename == str(tmp_path / name)
         assert str(error.value) == f"[Errno 2] No such file or directory: '{tmp_path / name}'"
+        with pytest.raises(IsADirectoryError) as error:
+            read(tmp_path)
+        assert error.value.filename == str(tmp_path)
     with pytest.raises(TypeError, match="give the path of a device file, or a dict"):
         limpid.device(5)
+    with pytest.raises(TypeError, match="give the path of a presets file"):
+        replay(presets=5)
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,34 @@ def test_finite_difference_is_that_of_numpy(signals):
     np.testing.assert_array_equal(replayed.velocity, expected)
 
 
+def test_note_on_an_unknown_modulus_has_a_remedy_that_works(tmp_path):
+    turning = np.arange(3000)
+    wrapped = turning % 360
+    expected = limpid.replay(turning, 1000).velocity
+    replayed = limpid.replay(wrapped, 1000)
+    (note,) = replayed.notes
+    remedy = "counts=numpy.unwrap(counts.astype(int), period=N), N about 360, if it has other counts per revolution"
+    assert note.endswith(f"or as large.counts_per_rev in the file of device=, or {remedy}")
+    assert (replayed.velocity != expected).any()
+    recording = limpid.Recording(wrapped, 1000)
+    assert remedy in limpid.recommend(recording).notes[0]
+    unwrapped = np.unwrap(recording.counts.astype(int), period=360)
+    np.testing.assert_array_equal(limpid.replay(unwrapped, 1000).velocity, expected)
+    # Of the other encoder.
+    coupled = limpid.replay(turning, 1000, coupled=(50 * turning) % 16384).notes[0]
+    assert "or coupled=numpy.unwrap(coupled.astype(int), period=16384) if" in coupled
+
+    path = tmp_path / "wrapped.csv"
+    rows = "".join(f"{k / 1000},{count},{50 * k % 16384}\n" for k, count in enumerate(wrapped))
+    path.write_text("t,counts_large,counts_small\n" + rows)
+    large, small = limpid.read_log(path).notes
+    assert "or modulus={'counts_large': N}, N about 360, if" in large
+    assert "or modulus={'counts_small': 16384} if" in small
+    log = limpid.read_log(path, modulus={"counts_large": 360, "counts_small": 16384})
+    assert log.notes == []
+    np.testing.assert_array_equal(limpid.replay(log).velocity, expected)
+
+
 def test_low_pass_is_the_recurrence_in_float64(signals):
     cutoff = 40.0
     replayed = limpid.replay(
