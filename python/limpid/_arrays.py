@@ -24,6 +24,20 @@ def one_dimensional(values: Any, name: str) -> NDArray[Any]:
     return array
 
 
+def as_number(value: Any, name: str, unit: str) -> float:
+    """A positive and finite number."""
+    try:
+        # A text is no number, although float() reads it.
+        number = None if isinstance(value, (str, bytes)) else float(value)
+    except (TypeError, ValueError):
+        number = None
+    if number is None:
+        raise TypeError(f"{name}: has the type {type(value).__name__}; pass a number ({unit})")
+    if not (number > 0 and np.isfinite(number)):
+        raise ValueError(f"{name}={value}: must be positive and finite ({unit})")
+    return number
+
+
 def as_counts(values: IntLike, name: str) -> NDArray[np.uint32]:
     """Integers of any type modulo 2^32."""
     array = one_dimensional(values, name)

@@ -169,8 +169,10 @@ def scores(
     *,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> dict[str, float]:
-    """Scores of a velocity against the true one, by name; see :func:`score_fields`.
+    """Scores of a velocity against the true one, by name; :func:`score_fields` has their units and definitions.
 
+    It has the scores of a velocity alone: not those relative to finite difference (``rms_pct``), nor those of a
+    standard deviation (``within_2_sigma``) or of a learned damping.
     The first 0.1 s is not scored, because every estimator begins at rest.
 
     Parameters
@@ -194,14 +196,15 @@ def scores(
         true_velocity = true_velocity.true_velocity
     if rate is None:
         raise ValueError("rate: missing; pass the rate of the rows (Hz)")
-    estimate = np.ascontiguousarray(_arrays.one_dimensional(velocity, "velocity"), dtype=np.float32)
+    rate = _arrays.as_number(rate, "rate", "Hz")
+    estimate = _arrays.as_floats(velocity, "velocity", "rad/s")
     truth = _arrays.as_floats(true_velocity, "true_velocity", "rad/s")
     _arrays.same_rows({"velocity": estimate, "true_velocity": truth})
-    return _limpid.scores(estimate, truth, rate, device)
+    return _limpid.scores(estimate.astype(np.float32), truth, rate, device)
 
 
 def score_fields() -> dict[str, tuple[str, str]]:
-    """Unit and definition of each score."""
+    """Unit and definition of each score of this project; :func:`scores` returns those of a velocity alone."""
     return {name: (unit, about) for name, unit, about in _limpid.score_fields()}
 
 
@@ -333,7 +336,7 @@ def tune(
     *,
     rate: float | None = None,
     estimators: str | Sequence[str] = (),
-    scenarios: Sequence[str] = (),
+    scenarios: str | Sequence[str] = (),
     seeds: int | None = None,
     seconds: float | None = None,
     perturbed: bool | None = None,
@@ -356,7 +359,7 @@ def tune(
     estimators
         Name or names [default: all that have parameters].
     scenarios, seeds, seconds, perturbed, friction
-        The simulated motion: names of scenarios, number of seeds, duration of each run (s), whether the
+        The simulated motion: name or names of scenarios, number of seeds, duration of each run (s), whether the
         constants of the device are wrong too, and whether the motor has friction.
     counts_per_rev
         Counts per revolution [default: those in the device file, otherwise those of the recordings, otherwise
@@ -367,6 +370,7 @@ def tune(
         Path of a device file (TOML), or a dict with its sections.
     """
     names = [estimators] if isinstance(estimators, str) else list(estimators)
+    motions = [scenarios] if isinstance(scenarios, str) else list(scenarios)
     if (logs is None) == (rate is None):
         raise ValueError("logs and rate: pass recordings, or the rate at which scenarios are simulated (Hz)")
     rows: list[Any] = []
@@ -375,10 +379,10 @@ def tune(
         if presets is not None:
             raise ValueError("presets: the search on scenarios begins with the shipped ones; leave it out")
         text, notes = _limpid.tune_scenarios(
-            rate, names, list(scenarios), seeds, seconds, perturbed, friction, counts_per_rev, device
+            rate, names, motions, seeds, seconds, perturbed, friction, counts_per_rev, device
         )
     else:
-        if scenarios or seeds or seconds or perturbed or not friction:
+        if motions or not friction or not (seeds is None and seconds is None and perturbed is None):
             raise ValueError("scenarios, seeds, seconds, perturbed, friction: are of simulated motion; leave them out")
         recordings = _logs(logs)
         text, rows, notes = _limpid.tune_logs(recordings, names, counts_per_rev, presets, device)

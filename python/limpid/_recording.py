@@ -76,12 +76,12 @@ class Recording:
             rate = _limpid.clock(self._t, name)
         assert rate is not None
         self.rate = rate
-        self._check_rate()
+        self._check_numbers()
 
     def _check(self) -> None:
         """Checks the attributes, some of which a user may have replaced."""
         self._check_columns()
-        self._check_rate()
+        self._check_numbers()
 
     def _check_columns(self) -> None:
         columns = _arrays.rows(self.counts, self.coupled, self.current, self.edge_age, self.edge_boundary)
@@ -95,10 +95,10 @@ class Recording:
         self._t = columns.pop("t")
         vars(self).update(columns)
 
-    def _check_rate(self) -> None:
-        if not (self.rate > 0 and np.isfinite(self.rate)):
-            raise ValueError(f"rate={self.rate}: must be positive and finite (Hz)")
-        self.rate = float(self.rate)
+    def _check_numbers(self) -> None:
+        self.rate = _arrays.as_number(self.rate, "rate", "Hz")
+        if self.counts_per_rev is not None:
+            self.counts_per_rev = _limpid.checked_counts_per_rev(self.counts_per_rev)
 
     @property
     def t(self) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ use simulation::scenario::ScenarioName;
 
 use crate::device::{Built, DeviceFile, Named, PresetsFile, device as of_file};
 use crate::error::value_error;
+use crate::integer::CountsPerRev;
 
 /// The rows of the catalogue, as keywords of `limpid.EstimatorInfo`.
 #[pyfunction]
@@ -47,7 +48,7 @@ pub(crate) fn estimators(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 pub(crate) fn parameters(
     estimator: &str,
     rate: f64,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
 ) -> PyResult<BTreeMap<&'static str, f64>> {

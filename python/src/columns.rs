@@ -7,6 +7,7 @@ use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use crate::error::value_error;
+use crate::integer::CountsPerRev;
 
 /// The arrays of a `limpid.Recording`, which checks their types and lengths before each call. The attribute `_t` is
 /// `None` for rows at a constant rate.
@@ -21,7 +22,7 @@ pub(crate) struct Columns<'py> {
     edge_age: Option<PyReadonlyArray1<'py, f64>>,
     edge_boundary: Option<PyReadonlyArray1<'py, u32>>,
     true_velocity: Option<PyReadonlyArray1<'py, f64>>,
-    pub(crate) counts_per_rev: Option<u32>,
+    pub(crate) counts_per_rev: Option<CountsPerRev>,
 }
 
 /// A recording of arrays that is not yet checked.

@@ -9,10 +9,11 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use recordings::arguments::differing_counts;
-use simulation::device::{COUNTS_PER_REV, Device};
+use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::error::{check_file, os_error, value_error};
+use crate::integer::CountsPerRev;
 
 /// A device file: its path, or a mapping with its sections and keys.
 pub(crate) struct DeviceFile {
@@ -99,7 +100,7 @@ fn table(dict: &Bound<'_, PyDict>, within: &str) -> PyResult<toml::Table> {
 /// The device of a file, or the default one; `counts_per_rev` replaces the counts of the large encoder.
 pub(crate) fn device(
     file: Option<&DeviceFile>,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
 ) -> Result<Device, Failure> {
     let mut device = match file {
         None => Device::default(),
@@ -117,15 +118,7 @@ pub(crate) fn device(
         })?,
     };
     if let Some(counts) = counts_per_rev {
-        if !COUNTS_PER_REV.contains(&counts) {
-            return Err(Failure::Input(format!(
-                "counts_per_rev={counts}: must be from {} to {}: four times the lines of a quadrature \
-                 encoder",
-                COUNTS_PER_REV.start(),
-                COUNTS_PER_REV.end()
-            )));
-        }
-        device.stages.large.counts_per_rev = counts;
+        device.stages.large.counts_per_rev = counts.get();
     }
     Ok(device)
 }
@@ -133,7 +126,7 @@ pub(crate) fn device(
 /// What gives the counts per revolution of the large encoder: the argument, or a device file that states them.
 pub(crate) fn counts_source(
     file: Option<&DeviceFile>,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
 ) -> Option<&str> {
     match counts_per_rev {
         Some(_) => Some("counts_per_rev"),
@@ -147,8 +140,8 @@ pub(crate) fn counts_source(
 /// that states others than those that are given.
 pub(crate) fn device_of(
     file: Option<&DeviceFile>,
-    counts_per_rev: Option<u32>,
-    recordings: &[(&str, Option<u32>)],
+    counts_per_rev: Option<CountsPerRev>,
+    recordings: &[(&str, Option<CountsPerRev>)],
 ) -> Result<(Device, Vec<String>), Failure> {
     let Some(source) = counts_source(file, counts_per_rev) else {
         return Ok((device(file, common_counts(recordings)?)?, Vec::new()));
@@ -156,6 +149,7 @@ pub(crate) fn device_of(
     let device = device(file, counts_per_rev)?;
     let used = device.stages.large.counts_per_rev;
     let differing = recordings.iter().filter_map(|(name, stated)| {
+        let stated = stated.map(CountsPerRev::get);
         let stated = stated.filter(|stated| *stated != used)?;
         Some(format!(
             "{name}: {}",
@@ -167,12 +161,15 @@ pub(crate) fn device_of(
 }
 
 /// The counts per revolution that all recordings state.
-fn common_counts(recordings: &[(&str, Option<u32>)]) -> Result<Option<u32>, Failure> {
+fn common_counts(
+    recordings: &[(&str, Option<CountsPerRev>)],
+) -> Result<Option<CountsPerRev>, Failure> {
     let Some((first, counts)) = recordings.first() else {
         return Ok(None);
     };
-    let states =
-        |counts: &Option<u32>| counts.map_or("none".to_owned(), |counts| counts.to_string());
+    let states = |counts: &Option<CountsPerRev>| {
+        counts.map_or("none".to_owned(), |counts| counts.to_string())
+    };
     match recordings.iter().find(|(_, other)| other != counts) {
         None => Ok(*counts),
         Some((other, others)) => Err(Failure::Input(format!(

@@ -16,6 +16,7 @@ use terminal::failure::Failure;
 use crate::columns::{copied, edge, edges};
 use crate::device::{Built, DeviceFile, Named, PresetsFile, device};
 use crate::error::{in_python, value_error};
+use crate::integer::{CountsPerRev, Integer};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
 /// What an [`Estimator`] changes.
@@ -146,22 +147,20 @@ impl Estimator {
     fn new(
         estimator: &str,
         rate: f64,
-        counts_per_rev: Option<u32>,
+        counts_per_rev: Option<CountsPerRev>,
         parameters: Option<Named>,
         presets: Option<PresetsFile>,
         device: Option<DeviceFile>,
-        modulus: Option<u32>,
+        modulus: Option<Integer>,
         varying: bool,
     ) -> PyResult<Self> {
         let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
         let named = parameters.unwrap_or_default();
         let built = Built::new(estimator, &device, rate, presets.as_ref(), &named);
         let built = built.map_err(value_error)?;
-        if let Some(modulus) = modulus.filter(|modulus| !(2..=1 << 31).contains(modulus)) {
-            return Err(PyValueError::new_err(format!(
-                "modulus={modulus}: must be from 2 to 2^31, for example 4096"
-            )));
-        }
+        let modulus = modulus
+            .map(|modulus| modulus.within("modulus", &(2..=1 << 31), ", for example 4096"))
+            .transpose()?;
         if varying && !built.kind.varying_period {
             let able = Kind::all().iter().filter(|kind| kind.varying_period);
             let able: Vec<_> = able.map(|kind| kind.name).collect();

@@ -16,6 +16,7 @@ mod command;
 mod device;
 mod error;
 mod estimator;
+mod integer;
 mod log;
 mod logs;
 mod replay;
@@ -42,6 +43,8 @@ mod _limpid {
     use super::command::command;
     #[pymodule_export]
     use super::estimator::Estimator;
+    #[pymodule_export]
+    use super::integer::checked_counts_per_rev;
     #[pymodule_export]
     use super::log::read_log;
     #[pymodule_export]

@@ -12,6 +12,7 @@ use terminal::failure::Failure;
 
 use crate::device::{DeviceFile, counts_source, device};
 use crate::error::{check_file, in_python, value_error};
+use crate::integer::CountsPerRev;
 
 /// Reads a log; the keywords of `limpid.Recording`.
 #[pyfunction]
@@ -23,7 +24,7 @@ pub(crate) fn read_log<'py>(
     modulus: Vec<String>,
     row_rate: Option<f64>,
     resample: Option<f64>,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     device: Option<DeviceFile>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = RecordingOptions {

@@ -18,11 +18,12 @@ use crate::background::interruptible;
 use crate::columns::{Columns, Unchecked};
 use crate::device::{DeviceFile, Named, PresetsFile, device, device_of, parameters as of_presets};
 use crate::error::{of_arrays, value_error};
+use crate::integer::{CountsPerRev, Integer};
 
 /// The device for these recordings, and what is said about their counts per revolution.
 fn device_of_logs(
     file: Option<&DeviceFile>,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     logs: &[Columns<'_>],
 ) -> PyResult<(Device, Vec<String>)> {
     let stated = logs
@@ -88,7 +89,7 @@ pub(crate) fn recommend(
     py: Python<'_>,
     logs: Vec<Columns<'_>>,
     instructions: f64,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
 ) -> PyResult<(String, String, Vec<String>)> {
@@ -132,7 +133,7 @@ pub(crate) fn tune_logs(
     py: Python<'_>,
     logs: Vec<Columns<'_>>,
     estimators: Vec<String>,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
 ) -> PyResult<(String, Vec<LogRow>, Vec<String>)> {
@@ -171,21 +172,19 @@ pub(crate) fn tune_scenarios(
     rate: f64,
     estimators: Vec<String>,
     scenarios: Vec<String>,
-    seeds: Option<u64>,
+    seeds: Option<Integer>,
     seconds: Option<f64>,
     perturbed: Option<bool>,
     friction: bool,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     device: Option<DeviceFile>,
 ) -> PyResult<(String, Vec<String>)> {
     let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
     let kinds = tunable(&estimators).map_err(value_error)?;
     let named: Result<Vec<ScenarioName>, String> = scenarios.iter().map(|s| s.parse()).collect();
-    if let Some(seeds) = seeds.filter(|seeds| !(1..=1000).contains(seeds)) {
-        return Err(value_error(format!(
-            "seeds={seeds}: must be from 1 to 1000"
-        )));
-    }
+    let seeds = seeds
+        .map(|seeds| seeds.within("seeds", &(1..=1000), ""))
+        .transpose()?;
     let wishes = Wishes {
         scenarios: named.map_err(value_error)?,
         seeds,

@@ -12,6 +12,7 @@ use terminal::failure::Failure;
 use crate::columns::Columns;
 use crate::device::{Built, DeviceFile, Named, PresetsFile, device_of, parameters as of_presets};
 use crate::error::{of_arrays, value_error};
+use crate::integer::CountsPerRev;
 use crate::stream::{Arrays, Stream, arrays, lack};
 
 /// The arrays, the times if the rows were replaced, the rate, the parameters and the notes.
@@ -30,7 +31,7 @@ pub(crate) fn replay<'py>(
     py: Python<'py>,
     recording: Columns<'py>,
     estimator: &str,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
     parameters: Named,
     presets: Option<PresetsFile>,
     device: Option<DeviceFile>,

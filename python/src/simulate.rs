@@ -15,6 +15,7 @@ use terminal::failure::Failure;
 use crate::background::interruptible;
 use crate::device::{DeviceFile, device};
 use crate::error::{check_file, in_python, value_error};
+use crate::integer::{CountsPerRev, Integer};
 use crate::log::fields;
 
 /// The load on the handle that `name` means.
@@ -39,18 +40,15 @@ pub(crate) fn simulate<'py>(
     scene: Option<&str>,
     rate: f64,
     seconds: Option<f64>,
-    seed: u64,
+    seed: Integer,
     hand: &str,
-    every: usize,
-    counts_per_rev: Option<u32>,
+    every: Integer,
+    counts_per_rev: Option<CountsPerRev>,
     device: Option<DeviceFile>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
-    if !(1..=1000).contains(&every) {
-        return Err(value_error(format!(
-            "every={every}: must be from 1 to 1000"
-        )));
-    }
+    let every = every.within("every", &(1..=1000), "")?;
+    let seed = seed.within("seed", &(0..=u64::MAX), "")?;
     let hand = self::hand(hand).map_err(value_error)?;
     let counts_per_rev = device.stages.large.counts_per_rev;
     let run = Run {
@@ -78,8 +76,8 @@ pub(crate) fn coarsen<'py>(
     columns: Vec<String>,
     modulus: Vec<String>,
     row_rate: Option<f64>,
-    counts_per_rev: u32,
-    fine_counts_per_rev: Option<u32>,
+    counts_per_rev: CountsPerRev,
+    fine_counts_per_rev: Option<Integer>,
     rate: f64,
     phase: f64,
     seconds: Option<f64>,
@@ -87,6 +85,10 @@ pub(crate) fn coarsen<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let device = self::device(device.as_ref(), Some(counts_per_rev)).map_err(value_error)?;
     check_file(py, &path)?;
+    let fine_counts_per_rev = fine_counts_per_rev
+        .map(|counts| counts.within("fine_counts_per_rev", &(1..=u32::MAX), ""))
+        .transpose()?;
+    let counts_per_rev = counts_per_rev.get();
     let wanted = Wanted {
         counts_per_rev,
         fine_counts_per_rev,
@@ -117,10 +119,8 @@ pub(crate) fn decode<'py>(
     lines: Option<Vec<String>>,
     columns: Vec<String>,
     row_rate: Option<f64>,
-    counts_per_rev: Option<u32>,
+    counts_per_rev: Option<CountsPerRev>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    // In the range of a device.
-    device(None, counts_per_rev).map_err(value_error)?;
     check_file(py, &path)?;
     let mut recording = interruptible(py, |_| {
         let capture = Capture::new(&columns, lines, row_rate, checked_rate(rate)?)?;
@@ -131,7 +131,7 @@ pub(crate) fn decode<'py>(
     let notes: Vec<_> = notes.iter().map(|note| in_python(note)).collect();
     let fields = fields(py, recording)?;
     fields.set_item("name", short_name(&path))?;
-    fields.set_item("counts_per_rev", counts_per_rev)?;
+    fields.set_item("counts_per_rev", counts_per_rev.map(CountsPerRev::get))?;
     fields.set_item("notes", notes)?;
     Ok(fields)
 }

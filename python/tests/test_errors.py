@@ -134,7 +134,7 @@ def test_estimator_refuses():
     for arguments, said in (
         ({"rate": 0.0}, "rate=0: must be positive"),
         ({"estimator": "nobody"}, "no estimator 'nobody'"),
-        ({"modulus": 1}, "modulus=1: must be from 2 to 2^31"),
+        ({"modulus": 1}, "modulus=1: must be from 2 to 2147483648, for example 4096"),
         ({"estimator": "foaw-end-fit", "varying": True}, "foaw-end-fit needs a constant period"),
     ):
         with pytest.raises(ValueError) as error:
@@ -214,9 +214,41 @@ def test_device_takes_numbers_of_numpy():
     assert device["large"]["inertia_kg_m2"] == 2e-5
 
 
+@pytest.mark.parametrize(
+    ("call", "argument"),
+    [
+        (lambda value: replay(counts_per_rev=value), "counts_per_rev"),
+        (lambda value: limpid.Recording(COUNTS, 1000, counts_per_rev=value), "counts_per_rev"),
+        (lambda value: limpid.Estimator(counts_per_rev=value), "counts_per_rev"),
+        (lambda value: limpid.Estimator(modulus=value), "modulus"),
+        (lambda value: limpid.simulate("track", seed=value), "seed"),
+        (lambda value: limpid.simulate(every=value), "every"),
+        (lambda value: limpid.tune(rate=1000, seeds=value), "seeds"),
+    ],
+)
+def test_integers_are_checked(call, argument):
+    for value in (-1, 2**64, 2**200):
+        with pytest.raises(ValueError, match=rf"^{argument}={value}: must be from \d+ to \d+"):
+            call(value)
+    for value in (4096.5, "4096"):
+        with pytest.raises(TypeError) as error:
+            call(value)
+        assert str(error.value) == f"{argument}: has the type {type(value).__name__}; pass an integer"
+
+
+def test_counts_per_rev_that_is_replaced_is_checked_again():
+    recording = limpid.Recording(COUNTS, 1000, counts_per_rev=np.int16(90))
+    recording.counts_per_rev = -1
+    with pytest.raises(ValueError, match="counts_per_rev=-1: must be from 16 to 4000000"):
+        limpid.replay(recording)
+
+
 def test_wrong_types_are_type_errors_that_name_the_argument():
-    with pytest.raises(TypeError, match="counts_per_rev"):
-        limpid.replay([0, 1, 2], 1000, counts_per_rev=4096.5)
+    for call in (lambda: replay(rate="1000"), lambda: limpid.Recording(COUNTS, "1000")):
+        with pytest.raises(TypeError, match=r"rate: has the type str; pass a number \(Hz\)"):
+            call()
+    with pytest.raises(TypeError, match="rate: has the type list"):
+        replay(rate=[1000, 2000])
 
 
 def test_version_is_that_of_the_package():
