@@ -13,6 +13,10 @@ FloatLike = Any
 
 def one_dimensional(values: Any, name: str) -> NDArray[Any]:
     """``values`` as an array of one dimension."""
+    if np.ma.is_masked(values):
+        raise ValueError(
+            f"{name}: has masked rows; fill them with array.filled(value), or remove them from all columns and pass t"
+        )
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -43,14 +47,17 @@ def as_counts(values: IntLike, name: str) -> NDArray[np.uint32]:
     array = one_dimensional(values, name)
     if array.size == 0:
         raise ValueError(f"{name}: is empty; pass at least one row")
-    if array.dtype.kind == "O" and all(isinstance(value, int) for value in array):
+    # A bool is an int of Python.
+    if array.dtype.kind == "O" and all(
+        isinstance(value, (int, np.integer)) and not isinstance(value, bool) for value in array
+    ):
         array = np.array([int(value) & 0xFFFFFFFF for value in array], dtype=np.uint32)
     if array.dtype.kind not in "iu":
         raise ValueError(
             f"{name}: has the type {array.dtype}; pass integers, for example "
             f"numpy.rint({name}).astype(numpy.int64)"
         )
-    return np.ascontiguousarray(array.astype(np.uint32, copy=False))
+    return np.require(array.astype(np.uint32, copy=False), requirements=["C", "A"])
 
 
 def as_floats(values: FloatLike, name: str, unit: str, *, nan: bool = False) -> NDArray[np.float64]:
@@ -58,7 +65,7 @@ def as_floats(values: FloatLike, name: str, unit: str, *, nan: bool = False) -> 
     array = one_dimensional(values, name)
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name}: has the type {array.dtype}; pass real numbers ({unit})")
-    array = np.ascontiguousarray(array, dtype=np.float64)
+    array = np.require(array, dtype=np.float64, requirements=["C", "A"])
     wrong = np.isinf(array) if nan else ~np.isfinite(array)
     if wrong.any():
         row = int(np.argmax(wrong))

@@ -289,6 +289,26 @@ def test_wrong_arguments_are_refused(call, said):
     assert "--" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("velocity", "said"),
+    [
+        (np.ones(300, dtype=complex), "velocity: has the type complex128; pass real numbers (rad/s)"),
+        (["1.5"] * 300, "velocity: has the type <U3; pass real numbers (rad/s)"),
+        (["a"] * 300, "velocity: has the type <U1; pass real numbers (rad/s)"),
+        (np.r_[np.ones(299), np.nan], "velocity: row 299 is nan"),
+    ],
+)
+def test_velocity_that_is_no_real_number_is_not_scored(velocity, said):
+    with pytest.raises(ValueError) as error:
+        limpid.scores(velocity, np.ones(300), 1000)
+    assert said in str(error.value)
+
+
+def test_name_of_one_scenario_is_a_list_of_one():
+    options = {"rate": 1000, "estimators": "low-pass", "seeds": 1, "seconds": 1}
+    assert limpid.tune(scenarios="track", **options) == limpid.tune(scenarios=["track"], **options)
+
+
 def test_recordings_of_two_encoders_are_refused():
     logs = [limpid.Recording(range(5000), 1000, counts_per_rev=counts) for counts in (90, 4096)]
     for call in (limpid.recommend, limpid.tune):

@@ -22,6 +22,28 @@ def test_finite_difference_is_that_of_numpy(signals):
     np.testing.assert_array_equal(replayed.velocity, expected)
 
 
+def test_arrays_that_are_not_aligned_are_copied():
+    counts = np.arange(100, dtype="<u4")
+    current = np.linspace(0, 1, 100)
+    odd = [np.frombuffer(b"x" + array.tobytes(), dtype=array.dtype, offset=1) for array in (counts, current)]
+    assert not any(array.flags.aligned for array in odd)
+    expected = limpid.replay(counts, 1000, current=current, estimator="imm-motor").velocity
+    np.testing.assert_array_equal(limpid.replay(odd[0], 1000, current=odd[1], estimator="imm-motor").velocity, expected)
+    streamed = limpid.Estimator("imm-motor", rate=1000).process(odd[0], current=odd[1]).velocity
+    np.testing.assert_array_equal(streamed, expected)
+
+
+def test_objects_that_are_integers_are_counts():
+    counts = np.array([np.int64(1), 5, np.uint8(9), -3, 2**40], dtype=object)
+    expected = limpid.replay([1, 5, 9, -3, 2**40], 1000).velocity
+    np.testing.assert_array_equal(limpid.replay(counts, 1000).velocity, expected)
+
+
+def test_array_without_masked_rows_is_an_array():
+    counts = np.ma.array(np.arange(100))
+    np.testing.assert_array_equal(limpid.replay(counts, 1000).velocity, limpid.replay(np.arange(100), 1000).velocity)
+
+
 def test_note_on_an_unknown_modulus_has_a_remedy_that_works(tmp_path):
     turning = np.arange(3000)
     wrapped = turning % 360
