@@ -1,5 +1,9 @@
-"""The compiled part of the package; its functions are called by the modules beside it."""
+"""The compiled part of the package; its functions are called by the modules beside it.
 
+The documentation of the class is that of the compiled part.
+"""
+
+from collections.abc import Mapping
 from os import PathLike
 from typing import Any, SupportsIndex
 
@@ -53,47 +57,29 @@ class Estimator:
         rate: float = 1000.0,
         *,
         counts_per_rev: int | None = None,
-        parameters: dict[str, float] | None = None,
+        parameters: Mapping[str, float] | None = None,
         presets: _Path | None = None,
         device: _Device | None = None,
         modulus: int | None = None,
         varying: bool = False,
     ) -> Estimator: ...
     @property
-    def name(self) -> str:
-        """Name of the estimator."""
-
+    def name(self) -> str: ...
     @property
-    def rate(self) -> float:
-        """Rate of the rows, Hz."""
-
+    def rate(self) -> float: ...
     @property
-    def counts_per_rev(self) -> int:
-        """Counts per revolution of the encoder."""
-
+    def counts_per_rev(self) -> int: ...
     @property
-    def parameters(self) -> dict[str, float]:
-        """Values of the parameters by name."""
-
+    def parameters(self) -> dict[str, float]: ...
     @property
-    def notes(self) -> list[str]:
-        """A line if the parameters were tuned for another encoder or rate."""
-
+    def notes(self) -> list[str]: ...
     @property
-    def std_dev(self) -> float | None:
-        """Standard deviation of the latest velocity, rad/s; None if the estimator reports none."""
-
+    def std_dev(self) -> float | None: ...
     @property
-    def acceleration(self) -> float | None:
-        """Acceleration at the latest row, rad/s^2; None if the estimator reports none."""
-
+    def acceleration(self) -> float | None: ...
     @property
-    def damping_ratio(self) -> float | None:
-        """Learned damping of the coupler over the assumed one; None if it is not learned."""
-
-    def reset(self) -> None:
-        """Forgets all rows: the next row is the first one."""
-
+    def damping_ratio(self) -> float | None: ...
+    def reset(self) -> None: ...
     def update(
         self,
         count: SupportsIndex,
@@ -103,19 +89,12 @@ class Estimator:
         edge_age: float | None = None,
         edge_boundary: SupportsIndex | None = None,
         dt: float | None = None,
-    ) -> float:
-        """Takes the next row and returns the velocity there, rad/s.
-
-        ``current`` is the current of the motor from this row to the next, A; ``coupled`` the count of the
-        small encoder; ``edge_age`` and ``edge_boundary`` the latest edge, as of :class:`Recording`; ``dt``
-        the time since the row before, s, for an estimator made with ``varying=True``.
-        """
-
+    ) -> float: ...
     def _process(
         self,
         counts: NDArray[np.uint32],
-        coupled: NDArray[np.uint32] | None,
         current: NDArray[np.float64] | None,
+        coupled: NDArray[np.uint32] | None,
         edge_age: NDArray[np.float64] | None,
         edge_boundary: NDArray[np.uint32] | None,
         dt: NDArray[np.float64] | None,

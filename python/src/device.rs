@@ -184,6 +184,15 @@ fn common_counts(
 /// Values of parameters by name, of one estimator.
 pub(crate) type Named = BTreeMap<String, f64>;
 
+/// The values of a mapping.
+pub(crate) fn named(mapping: &Bound<'_, PyAny>) -> PyResult<Named> {
+    let dict = mapping.py().get_type::<PyDict>().call1((mapping,));
+    let named = dict.and_then(|dict| dict.extract());
+    named.map_err(|_| {
+        PyTypeError::new_err("parameters: give a dict of names with numbers as values")
+    })
+}
+
 /// An estimator with the values of its parameters, for a device at a rate.
 pub(crate) struct Built {
     pub(crate) kind: &'static Kind,

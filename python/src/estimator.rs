@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use catalogue::estimators::{Estimator as AnyEstimator, Kind, Reports};
-use estimator_core::Count;
+use estimator_core::{Count, WrapError};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 use crate::columns::{copied, edge, edges};
-use crate::device::{Built, DeviceFile, Named, PresetsFile, device};
+use crate::device::{Built, DeviceFile, Named, PresetsFile, device, named};
 use crate::error::{in_python, value_error};
 use crate::integer::{CountsPerRev, Integer};
 use crate::stream::{Arrays, Stream, arrays, lack};
@@ -31,7 +31,7 @@ struct Running {
 
 /// An estimator that takes rows as they come.
 ///
-/// The docstring for users is in the stub of this module.
+/// The documentation of its methods and properties is that of Python; the class in Python has its own.
 #[pyclass(frozen, subclass, module = "limpid")]
 pub(crate) struct Estimator {
     kind: &'static Kind,
@@ -99,8 +99,14 @@ fn unwrap(trace: &mut Trace, last: &mut Option<Count>, modulus: u32) -> Result<(
     let mut latest = *last;
     for (k, count) in trace.counts_large.iter_mut().enumerate() {
         let raw = *count;
-        let next = after(latest, raw, modulus)
-            .map_err(|error| format!("row {k}: counts={raw} with modulus={modulus}: {error}"))?;
+        let signed = i64::from(raw as i32);
+        let refused =
+            |error: WrapError| format!("row {k}: counts={signed} with modulus={modulus}: {error}");
+        // A counter may count from its modulus down to 0 below zero.
+        if !(-i64::from(modulus)..i64::from(modulus)).contains(&signed) {
+            return Err(refused(WrapError::Raw).into());
+        }
+        let next = after(latest, raw, modulus).map_err(refused)?;
         latest = Some(next);
         *count = next.0;
         if let Some(Some(edge)) = trace.edges.as_mut().map(|edges| &mut edges[k]) {
@@ -148,15 +154,15 @@ impl Estimator {
         estimator: &str,
         rate: f64,
         counts_per_rev: Option<CountsPerRev>,
-        parameters: Option<Named>,
+        parameters: Option<&Bound<'_, PyAny>>,
         presets: Option<PresetsFile>,
         device: Option<DeviceFile>,
         modulus: Option<Integer>,
         varying: bool,
     ) -> PyResult<Self> {
         let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
-        let named = parameters.unwrap_or_default();
-        let built = Built::new(estimator, &device, rate, presets.as_ref(), &named);
+        let parameters = parameters.map_or(Ok(Named::new()), named)?;
+        let built = Built::new(estimator, &device, rate, presets.as_ref(), &parameters);
         let built = built.map_err(value_error)?;
         let modulus = modulus
             .map(|modulus| modulus.within("modulus", &(2..=1 << 31), ", for example 4096"))
@@ -182,50 +188,64 @@ impl Estimator {
         })
     }
 
+    /// Name of the estimator.
     #[getter]
     fn name(&self) -> &'static str {
         self.kind.name
     }
 
+    /// Rate of the rows, Hz.
     #[getter]
     fn rate(&self) -> f64 {
         self.rate_hz
     }
 
+    /// Counts per revolution of the encoder.
     #[getter]
     fn counts_per_rev(&self) -> u32 {
         self.counts_per_rev
     }
 
+    /// Values of the parameters by name.
     #[getter]
     fn parameters(&self) -> BTreeMap<&'static str, f64> {
         self.values.clone()
     }
 
+    /// A line if the parameters were tuned for another encoder or rate.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
     }
 
+    /// Standard deviation of the latest velocity, rad/s; None if the estimator reports none.
     #[getter]
     fn std_dev(&self, py: Python<'_>) -> Option<f32> {
         locked(self.running.lock_py_attached(py)).latest[0]
     }
 
+    /// Acceleration at the latest row, rad/s^2; None if the estimator reports none.
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> Option<f32> {
         locked(self.running.lock_py_attached(py)).latest[1]
     }
 
+    /// Learned damping of the coupler over the assumed one; None if it is not learned.
     #[getter]
     fn damping_ratio(&self, py: Python<'_>) -> Option<f32> {
         locked(self.running.lock_py_attached(py)).latest[2]
     }
 
+    /// Forgets all rows: the next row is the first one.
     fn reset(&self, py: Python<'_>) {
         *locked(self.running.lock_py_attached(py)) = Self::started(&self.estimator);
     }
 
+    /// Takes the next row and returns the velocity there, rad/s.
+    ///
+    /// `current` is the current of the motor from this row to the next, A; `coupled` the count of the
+    /// small encoder; `edge_age` and `edge_boundary` the latest edge, as of `Recording`; `dt`
+    /// the time since the row before, s, for an estimator made with `varying=True`.
     #[pyo3(signature = (count, *, current=None, coupled=None, edge_age=None, edge_boundary=None, dt=None))]
     fn update(
         &self,

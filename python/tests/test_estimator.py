@@ -207,3 +207,25 @@ def test_interrupted_rows_can_be_given_again(signals):
         signal.signal(signal.SIGALRM, old)
     few = rest[:5000]
     np.testing.assert_array_equal(again.process(few).velocity, once.process(few).velocity)
+
+
+def test_parameters_are_a_mapping():
+    parameters = types.MappingProxyType({"cutoff_hz": 40.0})
+    assert limpid.Estimator("low-pass", parameters=parameters).parameters == dict(parameters)
+    assert limpid.replay([1, 2, 3], 1000, estimator="low-pass", parameters=parameters).parameters == dict(parameters)
+    for wrong in (5, {"cutoff_hz": "x"}, ["cutoff_hz"]):
+        with pytest.raises(TypeError, match="parameters: give a dict of names with numbers as values"):
+            limpid.Estimator("low-pass", parameters=wrong)
+
+
+def test_count_at_the_modulus_or_above_is_refused():
+    for count in (100, 1000, -101, 2**31):
+        estimator = limpid.Estimator("finite-difference", rate=1000, modulus=100)
+        signed = (count + 2**31) % 2**32 - 2**31
+        with pytest.raises(ValueError, match=f"row 2: counts={signed} with modulus=100: raw must be below modulus"):
+            estimator.process([0, 50, count, 99])
+        with pytest.raises(ValueError, match="raw must be below modulus"):
+            estimator.update(count)
+        # The rows can be given again. A counter may count down below zero.
+        expected = limpid.replay([0, 40, 79, 78], 1000, estimator="finite-difference").velocity
+        np.testing.assert_array_equal(estimator.process([0, 40, 79, -22]).velocity, expected)

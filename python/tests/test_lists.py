@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import ast
 import doctest
+import inspect
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 
 import limpid
+from limpid import _limpid, cluster
 
 
 def test_lists_are_those_of_the_command(host_sim):
@@ -67,3 +71,32 @@ def test_examples_of_docstrings_are_right():
 def test_everything_public_has_a_docstring():
     for name in limpid.__all__:
         assert getattr(limpid, name).__doc__, name
+
+
+def test_every_public_name_has_a_documentation():
+    public = [(name, getattr(limpid, name)) for name in limpid.__all__]
+    classes = [(name, value) for name, value in public if inspect.isclass(value)]
+    members = [
+        (f"{name}.{member}", getattr(value, member))
+        for name, value in classes
+        for member in dir(value)
+        # The fields of a data class and of a named tuple are in the documentation of their class.
+        if not member.startswith("_") and (callable(getattr(value, member)) or inspect.isdatadescriptor(getattr(value, member)))
+    ]
+    assert "Estimator.update" in dict(members) and "Estimator.std_dev" in dict(members)
+    for name, value in [*public, *members, ("cluster.run", cluster.run)]:
+        assert name == "__version__" or inspect.getdoc(value), name
+
+
+def test_stub_has_the_arguments_of_the_compiled_part():
+    tree = ast.parse((Path(limpid.__file__).parent / "_limpid.pyi").read_text())
+    (estimator,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
+    functions = [(_limpid, node) for node in tree.body] + [(_limpid.Estimator, node) for node in estimator.body]
+    compared = 0
+    for owner, node in functions:
+        if not isinstance(node, ast.FunctionDef) or node.decorator_list or node.name == "__new__":
+            continue
+        arguments = [argument.arg for argument in [*node.args.args, *node.args.kwonlyargs]]
+        assert list(inspect.signature(getattr(owner, node.name)).parameters) == arguments, node.name
+        compared += 1
+    assert compared > 15
