@@ -152,7 +152,7 @@ pub(crate) fn tune_logs(
         });
         let plan = LogPlan::new(logs.collect(), device, &kinds, &before)?.with_notes(notes);
         let searches = plan.jobs()?;
-        let tuned = plan.rows(&searches, &|| stop.look())?;
+        let tuned = plan.rows_with_look(&searches, &|| (), &|| stop.look())?;
         let rows = searches.into_iter().zip(&tuned);
         let rows = rows.map(|(search, row)| (search.estimator, row.before, row.found, row.kept));
         let (presets, notes) = plan.presets(&tuned);
@@ -201,7 +201,7 @@ pub(crate) fn tune_scenarios(
         device,
     };
     interruptible(py, |stop| {
-        let tuned = plan.rows(&plan.jobs()?, &|| stop.look())?;
+        let tuned = plan.rows_with_look(&plan.jobs()?, &|| (), &|| stop.look())?;
         let (presets, notes) = plan.presets(&tuned)?;
         Ok((presets.to_toml()?, in_words_of_python(&notes)))
     })

@@ -66,7 +66,8 @@ pub struct Tuned {
     pub notes: Vec<String>,
 }
 
-/// Tunes the estimators `kinds` at one rate on one plant and calls `done` after each. All of them
+/// Tunes the estimators `kinds` at one rate on one plant and calls `done` after each, and `look` before each
+/// simulation and each evaluation. All of them
 /// must have parameters. The traces have the columns that the estimators `read` need.
 ///
 /// The cost is the mean distance outside the haptic interval plus a hundredth of the RMS error,
@@ -84,6 +85,7 @@ pub fn tune(
     rate_hz: f64,
     plant: PlantKind,
     done: &(dyn Fn() + Sync),
+    look: &(dyn Fn() + Sync),
 ) -> Result<Vec<Tuned>, Failure> {
     let traces = |seeds: Range<u64>| {
         let cases: Vec<_> = set
@@ -99,7 +101,10 @@ pub fn tune(
                 keep: false,
             })
             .collect();
-        let traces = cases.par_iter().map(|case| trace(case, &set.device, read));
+        let traces = cases.par_iter().map(|case| {
+            look();
+            trace(case, &set.device, read)
+        });
         traces.collect::<Result<Vec<_>, _>>()
     };
     let traces = [traces(0..set.seeds)?, traces(set.seeds..set.seeds + 1)?];
@@ -122,6 +127,7 @@ pub fn tune(
     for &kind in kinds {
         let mut notes = Vec::new();
         let found = best_values(kind, &setups[0], |values, least| {
+            look();
             mean_cost(kind, &setups, &seen, values, least)
         });
         let before = shipped.values(kind, &setup, plant);

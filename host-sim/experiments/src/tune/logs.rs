@@ -186,12 +186,33 @@ impl LogPlan {
         (presets, self.notes.iter().chain(found).cloned().collect())
     }
 
-    fn search(&self, search: &LogSearch) -> Result<LogTuned, Failure> {
+    /// As [`Experiment::rows`]; `look` is called before each evaluation, and may unwind to stop the search.
+    ///
+    /// # Errors
+    /// As [`Experiment::rows`].
+    pub fn rows_with_look(
+        &self,
+        jobs: &[LogSearch],
+        done: &(dyn Fn() + Sync),
+        look: &(dyn Fn() + Sync),
+    ) -> Result<Vec<LogTuned>, Failure> {
+        let rows = jobs.iter().map(|search| {
+            let tuned = self.search(search, look);
+            done();
+            tuned
+        });
+        rows.collect()
+    }
+
+    fn search(&self, search: &LogSearch, look: &(dyn Fn() + Sync)) -> Result<LogTuned, Failure> {
         let kind = Kind::named(&search.estimator)?;
         let setup = Setup::of(&self.device, self.rate_hz);
         let old = search.before.clone();
         let errors = |values: &Values| errors(kind, &setup, &self.tracks, values);
-        let new = best_values(kind, &setup, |values, _| errors(values)[0]);
+        let new = best_values(kind, &setup, |values, _| {
+            look();
+            errors(values)[0]
+        });
         let [before, found] = [&old, &new].map(errors);
         let kept = found[1] >= before[1];
         let notes = match kept {
@@ -223,12 +244,7 @@ impl Experiment for LogPlan {
     }
 
     fn rows(&self, jobs: &[LogSearch], done: &(dyn Fn() + Sync)) -> Result<Vec<LogTuned>, Failure> {
-        let rows = jobs.iter().map(|search| {
-            let tuned = self.search(search);
-            done();
-            tuned
-        });
-        rows.collect()
+        self.rows_with_look(jobs, done, &|| ())
     }
 }
 

@@ -130,8 +130,23 @@ impl Experiment for Plan {
         Ok(searches)
     }
 
-    /// The searches with the same traces follow each other.
     fn rows(&self, jobs: &[Search], done: &(dyn Fn() + Sync)) -> Result<Vec<Tuned>, Failure> {
+        self.rows_with_look(jobs, done, &|| ())
+    }
+}
+
+impl Plan {
+    /// As [`Experiment::rows`]; `look` is called before each simulation and each evaluation, and may unwind to
+    /// stop the search. The searches with the same traces follow each other.
+    ///
+    /// # Errors
+    /// As [`Experiment::rows`].
+    pub fn rows_with_look(
+        &self,
+        jobs: &[Search],
+        done: &(dyn Fn() + Sync),
+        look: &(dyn Fn() + Sync),
+    ) -> Result<Vec<Tuned>, Failure> {
         let traces = |job: &Search| (job.rate_hz, job.plant, job.group);
         let mut rows = Vec::new();
         for same in jobs.chunk_by(|a, b| traces(a) == traces(b)) {
@@ -139,7 +154,8 @@ impl Experiment for Plan {
             let group = &self.groups[group];
             let kinds: Vec<_> = same.iter().map(|job| job.kind).collect();
             let set = group.set(&self.device)?;
-            rows.extend(tune(&set, &kinds, &group.kinds()?, rate_hz, plant, done)?);
+            let read = group.kinds()?;
+            rows.extend(tune(&set, &kinds, &read, rate_hz, plant, done, look)?);
         }
         Ok(rows)
     }
