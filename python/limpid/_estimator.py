@@ -27,7 +27,8 @@ class Reports(NamedTuple):
 class Estimator(_Estimator):
     """An estimator that takes rows as they come: :meth:`update` one row, :meth:`process` several.
 
-    Rows give the same bits one by one, in blocks of any size, and in :func:`replay`. Methods may be called
+    Rows give the same bits one by one, in blocks of any size, and in :func:`replay`, which finds the modulus of counts
+    that wrap at a revolution or at 16 bits; here it is an argument. Methods may be called
     from several threads: a call waits for the one before. :meth:`process` releases the interpreter's lock.
 
     Parameters

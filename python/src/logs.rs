@@ -49,6 +49,11 @@ fn read(
     for unchecked in columns {
         let name = unchecked.name().to_owned();
         let mut recording = unchecked.recording()?;
+        if recording.trace.len() < 2 {
+            return Err(Failure::Input(format!(
+                "{name}: has one row; pass a recording of several seconds"
+            )));
+        }
         let unwrapped = recording.unwrap_counts(&ReadOptions::of(device));
         recording.check_times(&name)?;
         let recorded = Recorded::new(&name, &recording, device, parameters);

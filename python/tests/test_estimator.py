@@ -210,6 +210,14 @@ def test_interrupted_rows_can_be_given_again(signals):
     np.testing.assert_array_equal(again.process(few).velocity, once.process(few).velocity)
 
 
+def test_counter_of_16_bits_has_the_bits_of_replay_with_its_modulus():
+    counts = (np.arange(40_000) * 3).astype(np.uint16)
+    replayed = limpid.replay(counts, 1000)
+    assert replayed.notes[0].startswith("counts_large wraps at 65536 and is unwrapped")
+    streamed = limpid.Estimator("imm", rate=1000, modulus=65536).process(counts).velocity
+    np.testing.assert_array_equal(streamed, replayed.velocity)
+
+
 def test_parameters_are_a_mapping():
     parameters = types.MappingProxyType({"cutoff_hz": 40.0})
     assert limpid.Estimator("low-pass", parameters=parameters).parameters == dict(parameters)

@@ -329,5 +329,8 @@ def test_coarsening_is_refused_with_the_reason(data):
         limpid.coarsen(fine, 1024, rate=5)
     with pytest.raises(ValueError, match="give fine_counts_per_rev=, or list the file"):
         limpid.coarsen(data / "back-and-forth.csv", 16)
+    for none in (0, -3):
+        with pytest.raises(ValueError, match=f"fine_counts_per_rev={none}: must be from 1 to 4294967295"):
+            limpid.coarsen(fine, 1024, fine_counts_per_rev=none)
     with pytest.raises(FileNotFoundError):
         limpid.coarsen(data / "nothing.csv", 16)
