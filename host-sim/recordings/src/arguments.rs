@@ -87,6 +87,14 @@ pub struct Whole {
     pub stated: Vec<String>,
 }
 
+/// The device of a device file, before its recordings are read.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    device: Device,
+    /// Name of the file, if it states the counts per revolution.
+    counts_of: Option<String>,
+}
+
 /// The device of recordings.
 #[derive(Clone, Debug)]
 pub struct Counted {
@@ -125,20 +133,18 @@ impl RecordingOptions {
         self.resample.is_none()
     }
 
-    /// The device of `file` with the counts per revolution of the recordings.
+    /// The device of a file with the counts per revolution of the recordings.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names the device file or the recording.
-    pub fn counted(&self, file: &DeviceFile, logs: &[Log]) -> Result<Counted, Failure> {
-        let text = file.text()?;
-        let mut device = file.device(&text)?;
-        let name = file.name();
+    /// [`Failure::Input`] that names the recording.
+    pub fn counted(&self, loaded: Loaded, logs: &[Log]) -> Result<Counted, Failure> {
+        let mut device = loaded.device;
         let known = match self.encoder.counts_per_rev {
             Some(given) => {
                 device.stages.large.counts_per_rev = given;
                 Some("the options")
             }
-            None => Device::states_counts(&text).then_some(&*name),
+            None => loaded.counts_of.as_deref(),
         };
         Counted::new(device, known, logs)
     }
@@ -185,7 +191,8 @@ impl RecordingOptions {
     /// # Errors
     /// [`Failure::Input`] that names the file, its line and its column, or the option.
     pub fn whole(&self, log: &Log, file: &DeviceFile) -> Result<Whole, Failure> {
-        let Counted { device, lines, .. } = self.counted(file, std::slice::from_ref(log))?;
+        let Counted { device, lines, .. } =
+            self.counted(file.loaded()?, std::slice::from_ref(log))?;
         let recording = self.read(log, &device)?;
         recording.check_times(log.name())?;
         // Rows of another rate are not those of the board.
@@ -285,6 +292,18 @@ impl DeviceFile {
     /// [`Failure::Input`] that names the file and the key.
     pub fn load(&self) -> Result<Device, Failure> {
         self.device(&self.text()?)
+    }
+
+    /// As [`Self::load`], for recordings, which may state their counts per revolution.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn loaded(&self) -> Result<Loaded, Failure> {
+        let text = self.text()?;
+        Ok(Loaded {
+            device: self.device(&text)?,
+            counts_of: Device::states_counts(&text).then(|| self.name()),
+        })
     }
 
     /// The device of the file's text.

@@ -53,9 +53,10 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     if let Some(folder) = &options.report {
         Folder::check("--report", folder)?;
     }
+    let loaded = options.device.loaded()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let counted = options.read.counted(&options.device, &logs)?;
+    let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
     let known = match &options.known {
         Some(text) => Known::parse(text)?,

@@ -65,10 +65,11 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         let what = "LOG -: standard input can be read once; give - once";
         return Err(Failure::Input(what.to_owned()));
     }
+    let loaded = options.device.loaded()?;
     let parameters = options.parameters.load()?;
     let logs = options.logs.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let counted = options.recording.counted(&options.device, &logs)?;
+    let counted = options.recording.counted(loaded, &logs)?;
     let device = counted.device;
     let read = |log: &Log| -> Result<(String, Recording), Failure> {
         let recording = options.recording.read(log, &device)?;

@@ -73,11 +73,12 @@ pub(super) enum ReferenceUse {
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
     let kinds = kinds(&options.estimators)?;
+    let loaded = options.device.loaded()?;
     let parameters = options.parameters.load()?;
     let name = short_name(&options.trace);
     let log = Log::open(&options.trace)?;
     let logs = std::slice::from_ref(&log);
-    let counted = options.recording.counted(&options.device, logs)?;
+    let counted = options.recording.counted(loaded, logs)?;
     let device = counted.device;
     let (read, survey) = options.recording.survey(&log, &device)?;
     survey.check_times(log.name())?;

@@ -205,9 +205,10 @@ fn write(
 
 /// The searches on recordings.
 fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Failure> {
+    let loaded = options.device.loaded()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let counted = options.read.counted(&options.device, &logs)?;
+    let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
     let parameters = Parameters::default();
     let mut recordings = Vec::new();
