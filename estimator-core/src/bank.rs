@@ -79,8 +79,10 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            40: its P_11 += e² / 10 and P_22 += e² / 100, e² at most 1e4 counts²
 /// restart    Σ is no positive finite number: the bank starts anew
 /// noise      with stamps R = R (1 - 0.1 ρ)       ρ = e e' / S within ±1, of Σ w_i e_i, Σ w_i S_i, e' the edge before; R
-///            within 3e-4 and 0.1 counts²
-///            without R = R + 0.03 R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s = Σ w_i s_i, s' the sample before;
+///            within 3e-4 and 0.1 counts²; less 0.02 ρ S where ρ < 0 as at the edge before, and the tick before had
+///            an edge or another count; at 0.1 counts² no stamp is used
+///            without, or with stamps that are not used, R = R + 0.03 R (min(s² / V, 1.5) - 0.5) - 0.02 s s'
+///            s = Σ w_i s_i, s' the sample before;
 ///            V = P_00 + R of the last member; s s' within ±V, and 0 where it is the first one below 0; R within
 ///            1e-5 and 1e4 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
@@ -91,8 +93,8 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// c is the probability that q changes, one a second. The density of e has the tails of a Student
 /// distribution, `S^-1/2 (1 + e² / 32 S)^-16`. After a calm motion all members are so sure that an impact
 /// surprises them alike, and the ratios of the likelihoods say nothing: hence the surprise. The innovations
-/// of an optimal filter are white: if successive ones have opposite signs, R is too small. Without stamps R
-/// is the noise of the counts, as a magnetic encoder has it: it needs no parameter either.
+/// of an optimal filter are white: if successive ones have opposite signs, R is too small. Without stamps, or where a
+/// magnetic encoder makes them too noisy to be used, R is the noise of the counts: it needs no parameter either.
 ///
 /// Rest: 0.3 s after the last change of the count and the last edge, v and a become 0 exactly, and stay
 /// 0 until the next change or edge. A shaft slower than 3.3 counts per second is taken for one at rest.

@@ -1,8 +1,8 @@
 //! Output files. A file is complete or absent, even if the program is interrupted.
 //!
 //! A regular file is written under a temporary name in its folder and then renamed. The target of a
-//! symbolic link is replaced, and the link does not change. A device, a pipe or a socket is opened
-//! and written directly. `-` is standard output.
+//! symbolic link is replaced, and the link does not change. A file that is read-only stays. A device, a pipe
+//! or a socket is opened and written directly. `-` is standard output.
 
 mod folder;
 mod partial;
@@ -62,8 +62,8 @@ fn place(path: &Path) -> Option<PathBuf> {
 /// Checks that the file `path` has a place, so that a long run does not find out at its end.
 ///
 /// # Errors
-/// [`Failure::Input`] if the name is that of a folder, or lies in something that is none, or in a folder in
-/// which no file can be created.
+/// [`Failure::Input`] if the name is that of a folder or of a read-only file, or lies in something that is no folder,
+/// or in a folder in which no file can be created.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
     let name = path.display();
     if path.is_dir() || ends_as_folder(path) {
@@ -74,8 +74,20 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
     if is_written_in_place(path) {
         return Ok(());
     }
+    if fs::metadata(path).is_ok_and(|old| is_protected(&old)) {
+        return Err(unwritable(&name, &protected()));
+    }
     let path = link_target(path).unwrap_or_else(|_| path.to_owned());
     in_folders(path.ancestors().skip(1), &name)
+}
+
+/// Whether a file is read-only. A new file in its place would need no permission.
+fn is_protected(old: &fs::Metadata) -> bool {
+    old.is_file() && old.permissions().readonly()
+}
+
+fn protected() -> io::Error {
+    io::Error::new(ErrorKind::PermissionDenied, "the file is read-only")
 }
 
 /// Checks that the first of `above` that exists is a folder that takes files; `name` is the output in the
@@ -229,6 +241,9 @@ fn write_file(
     if is_written_in_place(path) {
         return in_place(OpenOptions::new().append(true).open(path)?, content).map(drop);
     }
+    if old.as_ref().is_some_and(is_protected) {
+        return Err(protected());
+    }
     let path = link_target(path)?;
     if let Some(folder) = path
         .parent()
@@ -279,101 +294,4 @@ fn link_target(path: &Path) -> io::Result<PathBuf> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::{check_place, is_same, write_whole};
-
-    #[test]
-    fn paths_of_one_file_are_the_same() {
-        let folder = tempfile::tempdir().unwrap();
-        let folder = folder.path();
-        let file = folder.join("a.csv");
-        write_whole(&file, b"x").unwrap();
-        for other in ["./a.csv", "none.csv"] {
-            let is_there = folder.join(other).exists();
-            assert_eq!(is_same(&file, &folder.join(other)), is_there, "{other}");
-        }
-        // A file that is not there yet.
-        let [new, same] = ["new.csv", "./new.csv"].map(|name| folder.join(name));
-        assert!(is_same(&new, &same) && !is_same(&new, &file));
-        #[cfg(unix)]
-        {
-            let link = folder.join("link.csv");
-            std::os::unix::fs::symlink("a.csv", &link).unwrap();
-            assert!(is_same(&link, &file));
-            for no_file in ["/dev/null", "-", "/dev/stdout"] {
-                assert!(
-                    !is_same(Path::new(no_file), Path::new(no_file)),
-                    "{no_file}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn file_without_a_place_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let folder = folder.path();
-        let file = folder.join("a.csv");
-        write_whole(&file, b"x").unwrap();
-        let said = |path: &Path| check_place(path).map_err(|error| error.to_string());
-        assert_eq!(said(&file), Ok(()));
-        assert_eq!(said(&folder.join("new/b.csv")), Ok(()));
-        assert!(said(folder).unwrap_err().contains("is a folder"));
-        let new = folder.join("new/c/");
-        assert!(said(&new).unwrap_err().contains("new/c/: is a folder"));
-        let error = write_whole(&new, b"x").unwrap_err().to_string();
-        assert!(
-            error.contains("new/c/: cannot write: is a directory"),
-            "{error}"
-        );
-        assert!(!folder.join("new").exists());
-        let inside = said(&file.join("b.csv")).unwrap_err();
-        assert!(inside.contains("a.csv is no folder"), "{inside}");
-        // The check leaves nothing.
-        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 1);
-        assert_eq!(said(Path::new("new.csv")), Ok(()));
-    }
-
-    /// Nobody, not even root, creates a file in `/sys`.
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn file_that_cannot_be_created_is_refused() {
-        let said = |path: &Path| check_place(path).map_err(|error| error.to_string());
-        for path in ["/sys/a.csv", "/sys/new/er/a.csv"] {
-            let error = said(Path::new(path)).unwrap_err();
-            assert!(
-                error.starts_with(&format!("{path}: cannot write: ")),
-                "{error}"
-            );
-            assert!(error.ends_with("; choose another path"), "{error}");
-        }
-        let folder = tempfile::tempdir().unwrap();
-        let link = folder.path().join("link.csv");
-        std::os::unix::fs::symlink("/sys/a.csv", &link).unwrap();
-        assert!(
-            said(&link)
-                .unwrap_err()
-                .contains("link.csv: cannot write: ")
-        );
-        // What is written in its place needs no folder that takes files.
-        for path in ["/dev/null", "/dev/stderr", "/proc/self/fd/2"] {
-            assert_eq!(said(Path::new(path)), Ok(()), "{path}");
-        }
-    }
-
-    #[test]
-    fn failed_write_leaves_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let folder = folder.path();
-        let file = folder.join("deep/er/file.txt");
-        write_whole(&file, b"whole").unwrap();
-        assert_eq!(std::fs::read(&file).unwrap(), b"whole");
-        // A folder of that name cannot be replaced by a file.
-        let error = write_whole(&folder.join("deep"), b"x").unwrap_err();
-        assert!(error.to_string().contains("deep: cannot write"), "{error}");
-        let left: Vec<_> = std::fs::read_dir(folder).unwrap().collect();
-        assert_eq!(left.len(), 1);
-    }
-}
+mod tests;

@@ -21,11 +21,12 @@ const DURATIONS: &[&str] = &[
 ];
 
 /// Whether a part of `name` is one of the `words`: a word of one or two letters is a whole part, one of three begins or
-/// ends a part, and a longer one is anywhere. A sequence is no encoder.
+/// ends a part, and a longer one, or one of several parts, is anywhere. A sequence is no encoder.
 pub(in super::super) fn has(name: &str, words: &[&str]) -> bool {
     let lower = name.to_lowercase();
     let parts = parts(name);
     let is_in = |word: &str| match word.len() {
+        _ if word.contains('_') => lower.contains(word),
         0..=2 => parts.iter().any(|part| part == word),
         3 => parts
             .iter()
@@ -107,7 +108,7 @@ mod tests {
             assert!(!has(name, POSITIONS), "{name}");
         }
         assert!(has("time_ms", &["ms"]) && has("T(ms)", &["ms"]) && has("iqRef", &["iq"]));
-        assert!(!has("rms_A", &["ms"]));
+        assert!(has("motor_i_q", &["i_q"]) && !has("rms_A", &["ms"]));
     }
 
     #[test]
