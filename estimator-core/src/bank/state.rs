@@ -1,13 +1,15 @@
 //! State of the bank: members, weights, and where on the ladder they stand.
 
+mod noise;
+
 use super::interval::{Ends, Likelihood};
 use super::ladder::{FIRST_RUNG, Predict, RUNGS};
 use super::member::{Innovation, Member};
 use crate::branch::unlikely;
-use crate::design::const_math::limited;
 use crate::edge_clock::FreshEdge;
 use crate::interval::smaller;
 use crate::units::Count;
+pub(super) use noise::LEAST_OF_COUNT;
 
 /// State of a [`ModelBank`](crate::ModelBank).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +24,11 @@ pub struct ModelBankState<const K: usize> {
     weights: [f32; K],
     /// Rung of the first member.
     rung: u32,
-    /// Variance R of the noise of a boundary, or of a count without stamps, counts².
+    /// Variance R of the noise of a boundary, or of a count where no stamps are used, counts².
     pub(super) noise: f32,
     /// Innovation of the edge, or shift by the count, before, counts.
     innovation: f32,
-    /// Whether the two shifts before had opposite signs.
+    /// Whether it and the one before had opposite signs.
     alternates: bool,
 }
 
@@ -61,14 +63,6 @@ const fn divisor(deviations: f32) -> f32 {
 /// Weight of a new member.
 const NEW_WEIGHT: f32 = 0.2;
 
-/// Range of R of a boundary, counts². At the largest one the stamps are too noisy to be used.
-const LEAST_OF_BOUNDARY: f32 = 3e-4;
-const LARGEST_OF_BOUNDARY: f32 = 0.1;
-
-/// Range of R of a count, counts².
-pub(super) const LEAST_OF_COUNT: f32 = 1e-5;
-const LARGEST_OF_COUNT: f32 = 1e4;
-
 /// What a measurement says about the members.
 pub(super) struct Judged<const K: usize> {
     /// Likelihoods, times the root of `variance`.
@@ -78,17 +72,6 @@ pub(super) struct Judged<const K: usize> {
     /// Innovation of the last member, counts; without an edge the shift of its position.
     pub(super) off: f32,
 }
-
-/// Change of R by an edge, in R.
-const GAIN_OF_EDGE: f32 = 0.1;
-
-/// Change of R in the product of two innovations or shifts, and by a count in R by the size of a shift.
-const GAIN_OF_PRODUCT: f32 = 0.02;
-const GAIN_OF_SIZE: f32 = 0.03;
-
-/// Square of a shift over its variance at which R is right, and the largest one that counts.
-const USUAL: f32 = 0.5;
-const LARGEST: f32 = 1.5;
 
 impl<const K: usize> ModelBankState<K> {
     /// The state at the count `anchor`, with the variance R = `noise`.
@@ -104,19 +87,6 @@ impl<const K: usize> ModelBankState<K> {
             innovation: 0.0,
             alternates: false,
         }
-    }
-
-    /// The variance R of the position of a boundary, counts², as estimated from the innovations of
-    /// edges. Without stamps it is the variance of the noise of a count.
-    #[must_use]
-    pub const fn boundary_variance(&self) -> f32 {
-        self.noise
-    }
-
-    /// Whether the boundaries are exact enough for their stamps to be used.
-    #[inline(always)]
-    pub(super) const fn reads_stamps(&self) -> bool {
-        self.noise < LARGEST_OF_BOUNDARY
     }
 
     /// The weighted mean of `part` of each member.
@@ -229,54 +199,13 @@ impl<const K: usize> ModelBankState<K> {
             variance = correction.variance;
         }
         if learns {
-            self.learn_noise(shift, variance);
+            self.learn_noise_of_counts(shift, variance);
         }
         Judged {
             likelihoods,
             variance: 1.0,
             off: self.members[K - 1].position - expected,
         }
-    }
-
-    /// The product of an innovation or a shift and the one before. A negative one is 0 unless it follows another:
-    /// alternating innovations are noise, but a motion that the members cannot follow makes two alternate, and
-    /// seldom three.
-    #[inline(always)]
-    fn product(&mut self, innovation: f32) -> f32 {
-        let product = innovation * self.innovation;
-        let alternated = self.alternates;
-        self.innovation = innovation;
-        self.alternates = product < 0.0;
-        if self.alternates && !alternated {
-            0.0
-        } else {
-            product
-        }
-    }
-
-    /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the one
-    /// before in parts of R, which finds an R that is nearly right, and by a product below 0, which raises one that
-    /// is far too small. Between edges that are ticks apart the motion has changed: their product says nothing.
-    #[inline(always)]
-    fn learn_noise_of_edges(&mut self, error: f32, variance: f32, moved: bool) {
-        let correlation = limited(error * self.innovation / variance, 1.0);
-        let product = self.product(error);
-        let mut noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
-        if moved && product < 0.0 {
-            noise -= GAIN_OF_PRODUCT * limited(product, variance);
-        }
-        // Both ends are constants: the panic of `clamp` is removed.
-        self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
-    }
-
-    /// Changes R by the `shift` of a position whose variance with its noise is `variance`.
-    #[inline(always)]
-    fn learn_noise(&mut self, shift: f32, variance: f32) {
-        let product = limited(self.product(shift), variance);
-        let size = smaller(shift * shift / variance, LARGEST) - USUAL;
-        let noise = self.noise + GAIN_OF_SIZE * size * self.noise - GAIN_OF_PRODUCT * product;
-        // Both ends are constants: the panic of `clamp` is removed.
-        self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);
     }
 
     /// Updates the weights by the likelihoods, with the probability `change` of a change of q. Returns

@@ -1,7 +1,8 @@
 //! Weights, surprise and corrections of the state.
 
 extern crate std;
-use super::{Judged, LEAST_OF_BOUNDARY, ModelBankState, root};
+use super::noise::LEAST_OF_BOUNDARY;
+use super::{Judged, ModelBankState, root};
 use crate::bank::interval::{Ends, Likelihood};
 use crate::bank::{ModelBank, Stamps};
 use crate::edge_clock::FreshEdge;

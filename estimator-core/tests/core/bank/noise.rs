@@ -83,6 +83,7 @@ fn noise(deviation: f64, hz: f64, seconds: f64, seed: u64) -> impl Fn(f64) -> f6
 fn noisy_stamps_do_no_harm() {
     for (counts, per_tick, rate) in [(4096.0, 1.0, 1e3), (1024.0, 8.0, 1e3), (16_384.0, 4.0, 4e3)] {
         let bank: ImmEdge = ModelBank::with_edges(CLOCK, Hertz(rate)).expect("valid");
+        let on_counts: Imm = ModelBank::new(Hertz(rate)).expect("valid");
         let clean = Seen::new(rate, 4000, 0.0, &|t| counts * hand(t));
         for (deviation, share) in [
             (0.1, 0.2),
@@ -94,8 +95,10 @@ fn noisy_stamps_do_no_harm() {
             let noise = noise(deviation, per_tick * rate, 4001.0 / rate, 29);
             let mut seen = Seen::new(rate, 4000, 0.0, &|t| counts * hand(t) + noise(t));
             seen.velocities.clone_from(&clean.velocities);
-            let ratio = seen.rms(&seen.run(&bank)) / seen.rms(&seen.finite_difference());
-            println!("{counts} counts at {rate} Hz, noise {deviation}: {ratio}");
+            let differences = seen.rms(&seen.finite_difference());
+            let ratio = seen.rms(&seen.run(&bank)) / differences;
+            let of_counts = seen.rms(&seen.run(&on_counts)) / differences;
+            println!("{counts} counts at {rate} Hz, noise {deviation}: {ratio}, imm {of_counts}");
             assert!(ratio < share, "{counts}, {deviation}: {ratio}");
         }
     }

@@ -88,8 +88,7 @@ const FASTEST_HZ: f64 = 1e5;
 pub(super) fn fast(rate_hz: f64) -> Option<String> {
     (rate_hz > FASTEST_HZ).then(|| {
         format!(
-            "{rate_hz} rows a second are more than {FASTEST_HZ}: check that t is not in ms, us or ns, which --column \
-             t=NAME:ms states"
+            "{rate_hz} rows a second are more than {FASTEST_HZ}: check the unit of t, which --column t=NAME:ms states"
         )
     })
 }

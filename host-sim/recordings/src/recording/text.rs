@@ -84,7 +84,7 @@ impl<R: BufRead> Text<R> {
             line => format!("the header in line {line}"),
         };
         let remedy = match (self.header, fields > columns) {
-            (0, _) => "remove the one of both that is cut, or that two rows run together in",
+            (0, _) => "one of these lines is cut, or is two rows run together: remove it",
             (_, false) => "remove the line if the log was cut there",
             (_, true) => "remove the line if two rows run together there",
         };

@@ -69,12 +69,12 @@ fn row_of_another_length_is_named() {
     for (text, said) in [
         (
             "8,34\n0,0,1\n1,6,1\n",
-            "line 2: 3 fields where the first row, in line 1, has 2; remove the one of both that is cut, or that two \
-             rows run together in; numbers with a decimal comma need another separator than a comma",
+            "line 2: 3 fields where the first row, in line 1, has 2; one of these lines is cut, or is two rows \
+             run together: remove it; numbers with a decimal comma need another separator than a comma",
         ),
         (
             "9,17,3\n0,0\n1,1\n",
-            "line 2: 2 fields where the first row, in line 1, has 3; remove the one of both",
+            "line 2: 2 fields where the first row, in line 1, has 3; one of these lines is cut",
         ),
     ] {
         let error = read(text, options).unwrap_err();
@@ -128,7 +128,7 @@ fn rate_of_no_control_loop_is_noted() {
     for (unit, notes) in [("us", 1), ("ms", 0)] {
         let text = format!("time_{unit},counts\n{ROWS}");
         let recording = read(&text, "").unwrap();
-        let said = "1000000 rows a second are more than 100000: check that t is not in ms";
+        let said = "1000000 rows a second are more than 100000: check the unit of t, which";
         let found = recording.notes.iter().filter(|note| note.starts_with(said));
         assert_eq!(found.count(), notes, "{unit}");
     }

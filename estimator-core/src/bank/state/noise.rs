@@ -1,0 +1,80 @@
+//! The noise of the measurements, which the bank learns: innovations of an optimal filter are white (Mehra 1970).
+
+use super::ModelBankState;
+use crate::design::const_math::limited;
+use crate::interval::smaller;
+
+/// Range of R of a boundary, counts². At the largest one the stamps are too noisy to be used.
+pub(super) const LEAST_OF_BOUNDARY: f32 = 3e-4;
+const LARGEST_OF_BOUNDARY: f32 = 0.1;
+
+/// Range of R of a count, counts².
+pub(in crate::bank) const LEAST_OF_COUNT: f32 = 1e-5;
+const LARGEST_OF_COUNT: f32 = 1e4;
+
+/// Change of R by an edge, in R.
+const GAIN_OF_EDGE: f32 = 0.1;
+
+/// Change of R in the product of two innovations or shifts, and by a count in R by the size of a shift.
+const GAIN_OF_PRODUCT: f32 = 0.02;
+const GAIN_OF_SIZE: f32 = 0.03;
+
+/// Square of a shift over its variance at which R is right, and the largest one that counts.
+const USUAL: f32 = 0.5;
+const LARGEST: f32 = 1.5;
+
+impl<const K: usize> ModelBankState<K> {
+    /// The variance R of the position of a boundary, counts², as estimated from the innovations of
+    /// edges. Without stamps, or where they are not used, it is the variance of the noise of a count.
+    #[must_use]
+    pub const fn boundary_variance(&self) -> f32 {
+        self.noise
+    }
+
+    /// Whether the boundaries are exact enough for their stamps to be used.
+    #[inline(always)]
+    pub(in crate::bank) const fn reads_stamps(&self) -> bool {
+        self.noise < LARGEST_OF_BOUNDARY
+    }
+
+    /// The product of an innovation or a shift and the one before. A negative one is 0 unless it follows another:
+    /// alternating innovations are noise, but a motion that the members cannot follow makes two alternate, and
+    /// seldom three.
+    #[inline(always)]
+    fn product(&mut self, innovation: f32) -> f32 {
+        let product = innovation * self.innovation;
+        let alternated = self.alternates;
+        self.innovation = innovation;
+        self.alternates = product < 0.0;
+        if self.alternates && !alternated {
+            0.0
+        } else {
+            product
+        }
+    }
+
+    /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the one
+    /// before in parts of R, which finds an R that is nearly right, and by a product below 0, which raises one that
+    /// is far too small. Between edges that are ticks apart the motion has changed: their product says nothing.
+    #[inline(always)]
+    pub(super) fn learn_noise_of_edges(&mut self, error: f32, variance: f32, moved: bool) {
+        let correlation = limited(error * self.innovation / variance, 1.0);
+        let product = self.product(error);
+        let mut noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
+        if moved && product < 0.0 {
+            noise -= GAIN_OF_PRODUCT * limited(product, variance);
+        }
+        // Both ends are constants: the panic of `clamp` is removed.
+        self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
+    }
+
+    /// Changes R by the `shift` of a position whose variance with its noise is `variance`.
+    #[inline(always)]
+    pub(super) fn learn_noise_of_counts(&mut self, shift: f32, variance: f32) {
+        let product = limited(self.product(shift), variance);
+        let size = smaller(shift * shift / variance, LARGEST) - USUAL;
+        let noise = self.noise + GAIN_OF_SIZE * size * self.noise - GAIN_OF_PRODUCT * product;
+        // Both ends are constants: the panic of `clamp` is removed.
+        self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);
+    }
+}
