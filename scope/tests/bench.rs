@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use common::{Client, Server};
+use common::{ATTEMPTS, Client, Server, is_stalled};
 use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
 use serde_json::{Value, json};
@@ -41,15 +41,37 @@ fn until(client: &mut Client, wanted: Setting, is_it: impl Fn(f64) -> bool) -> V
     })
 }
 
+/// Orders a procedure and returns the status that is as `wanted`. One that a stalled machine ended, or whose
+/// order found no room, is ordered again.
+fn guided(client: &mut Client, name: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+    for _ in 0..ATTEMPTS {
+        let before = client.status("a status", |_| true);
+        client.order(&json!({"do": "guide", "name": name}));
+        // Orders that found no room are counted.
+        client.status("the procedure begins", |status| {
+            status["guide"] != before["guide"] || status["counts"] != before["counts"]
+        });
+        let status = client.status("the procedure is as wanted, or ends", |status| {
+            wanted(status) || status["guide"]["runs"] != true
+        });
+        if wanted(&status) {
+            return status;
+        }
+        let guide = &status["guide"];
+        let failure = &guide["failure"];
+        assert!(failure.is_null() || is_stalled(failure), "{guide}");
+        eprintln!("{name} again: {failure}");
+    }
+    panic!("{ATTEMPTS} attempts at {name}");
+}
+
 /// Lines of a procedure that has ended without a failure.
-fn guided(client: &mut Client, name: &str) -> Vec<String> {
-    client.order(&json!({"do": "guide", "name": name}));
-    let status = client.status("the procedure ends", |status| {
-        status["guide"]["name"] == name && status["guide"]["runs"] == false
+fn completed(client: &mut Client, name: &str) -> Vec<String> {
+    let status = guided(client, name, |status| {
+        let guide = &status["guide"];
+        guide["name"] == name && guide["runs"] == false && guide["failure"].is_null()
     });
-    let guide = &status["guide"];
-    assert!(guide["failure"].is_null(), "{guide}");
-    let lines = guide["lines"].as_array().expect("lines");
+    let lines = status["guide"]["lines"].as_array().expect("lines");
     lines
         .iter()
         .map(|line| line.as_str().expect("a line").to_owned())
@@ -87,13 +109,12 @@ fn settings_are_shown_set_and_stored_and_a_frozen_page_ends_a_procedure() {
     });
     let why = status["guide"]["failure"].to_string();
     assert!(why.contains("current-monitor"), "{why}");
-    let lines = guided(&mut page, "bring-up");
+    let lines = completed(&mut page, "bring-up");
     let passed = lines.iter().filter(|line| line.starts_with("pass")).count();
     assert!(passed >= 5, "{lines:?}");
 
     // The page freezes while a procedure has the amplifiers enabled, and keeps them alive.
-    page.order(&json!({"do": "guide", "name": "bring-up"}));
-    page.status("it arms the board", |status| {
+    guided(&mut page, "bring-up", |status| {
         status["guide"]["runs"] == true && status["on"] == true
     });
     page.lives = false;
@@ -145,7 +166,7 @@ fn board_behind_a_link_is_commanded_calibrated_and_disarmed_at_the_end() {
     let board = Board::start("current-monitor", [error(6.0, 1.0), error(-4.0, 1.0)]);
     let mut server = Server::start(&["--board", &board.port, "--timeout", "60"]);
     let mut page = commanding(&server);
-    let lines = guided(&mut page, "calibrate");
+    let lines = completed(&mut page, "calibrate");
     let passed = lines.iter().filter(|line| line.starts_with("pass")).count();
     assert_eq!(passed, 2, "{lines:?}");
     // The calibration of the emulated board is within 0.3 codes.

@@ -13,6 +13,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use haptic_control::Stop;
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest as _;
 use tungstenite::{Message, WebSocket};
@@ -21,6 +22,16 @@ use virtual_board::image::Image;
 /// Longest wait for a condition. The board's time decides, so that a slow machine, or one on which several
 /// boards run, only takes longer.
 pub(crate) const LIMIT: Duration = Duration::from_secs(300);
+
+/// Attempts of a guided procedure.
+pub(crate) const ATTEMPTS: usize = 4;
+
+/// Whether a procedure failed because this machine stood still for seconds: the page was not heard, or the
+/// board not commanded.
+pub(crate) fn is_stalled(failure: &Value) -> bool {
+    let failure = failure.to_string();
+    failure.contains("ended by the page") || failure.contains(Stop::CommandTimeout.as_str())
+}
 
 /// A file of its own for this process in the folder of the build.
 pub(crate) fn scratch(name: &str) -> PathBuf {
@@ -234,7 +245,9 @@ impl Client {
             Err(tungstenite::Error::Io(error))
                 if matches!(
                     error.kind(),
-                    std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut
+                    std::io::ErrorKind::WouldBlock
+                        | std::io::ErrorKind::TimedOut
+                        | std::io::ErrorKind::Interrupted
                 ) =>
             {
                 None
@@ -274,14 +287,19 @@ impl Client {
         mut wanted: impl FnMut(&mut Self, &Value) -> Option<T>,
     ) -> T {
         let end = Instant::now() + LIMIT;
+        let mut last = Value::Null;
         while Instant::now() < end {
-            if let Some(message) = self.next()
-                && let Some(found) = wanted(self, &message)
-            {
+            let Some(message) = self.next() else {
+                continue;
+            };
+            if let Some(found) = wanted(self, &message) {
                 return found;
             }
+            if message["type"] == "status" {
+                last = message;
+            }
         }
-        panic!("{what}: did not come within {LIMIT:?}");
+        panic!("{what}: did not come within {LIMIT:?}; last status: {last}");
     }
 
     /// Waits for a status that is as wanted.
