@@ -97,7 +97,12 @@ impl<'a> Columns<'a> {
 
     /// Adds a row.
     pub(super) fn take(&mut self, row: &Row) -> Result<(), Failure> {
-        if row.is_cut_at(self.places.iter().flatten().map(|place| place.place)) {
+        if row.is_cut_at(
+            self.places
+                .iter()
+                .flatten()
+                .flat_map(|place| place.indices()),
+        ) {
             self.cut = Some(row.line);
             return Ok(());
         }

@@ -1,6 +1,6 @@
 //! Units at the end of a column's name: `time_ms`, `angle [deg]`, `Time (us)`, `theta/deg`.
 
-use super::units::{Quantity, Unit, quotient};
+use super::units::{Quantity, Unit, is_separator, quotient};
 
 /// Units that no quantity of a recording has, for the endings that are no part of a name.
 const FOREIGN: [&str; 32] = [
@@ -86,7 +86,6 @@ pub(super) fn bracketed(column: &str) -> Option<(&str, &str)> {
 
 /// The longest end of a name without brackets that is a unit.
 fn plain(quantity: Quantity, column: &str) -> Ending<'_> {
-    let is_separator = |c: char| matches!(c, '_' | ' ' | '.' | '/' | '-');
     let after = column
         .match_indices(is_separator)
         .map(|(at, separator)| &column[at + separator.len()..]);

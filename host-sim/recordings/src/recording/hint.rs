@@ -143,7 +143,11 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
         Ending::Nothing if quantity == Quantity::Position && layout.fractional.contains(&place) => {
             format!(":{ANGLE}")
         }
-        Ending::Nothing => format!(":{}", example(quantity)),
+        Ending::Nothing => {
+            let mut known = layout.since_1970.iter();
+            let known = known.find(|(at, _)| quantity == Quantity::Time && *at == place);
+            format!(":{}", known.map_or(example(quantity), |(_, unit)| unit))
+        }
     };
     (name != ours).then(|| format!("{ours}={}{unit}", theirs(layout, place)))
 }
@@ -291,6 +295,22 @@ mod tests {
             let error = read(&format!("time;position\n{rows}\n"), "").unwrap_err();
             let said = format!("for example --column 't=time:s,counts_large=position:{unit}'");
             assert!(error.contains(&said), "{rows}: {error}");
+        }
+    }
+
+    #[test]
+    fn time_since_1970_is_proposed_with_its_unit() {
+        for (first, unit) in [
+            ("1700000000123456789", "ns"),
+            ("1700000000123456", "us"),
+            ("1700000000123", "ms"),
+            ("1700000000.5", "s"),
+            ("4200000000000", "s"),
+        ] {
+            // The column of the counts is none of time.
+            let error = read(&format!("time;position\n{first};1700000000123\n"), "").unwrap_err();
+            let said = format!("--column 't=time:{unit},counts_large=position:counts'");
+            assert!(error.contains(&said), "{first}: {error}");
         }
     }
 

@@ -16,9 +16,9 @@ use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 use super::header;
 use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
-pub(super) use places::{Place, Places};
+pub(super) use places::{Part, Place, Places};
 pub(super) use search::{UNKNOWN, is_number};
-use search::{fractional, is_content, named, numbers, probable, two_levels};
+use search::{fractional, is_content, named, numbers, probable, since_1970, two_levels};
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 
@@ -47,6 +47,8 @@ pub(super) struct Layout {
     pub(super) two_levels: Vec<usize>,
     /// Places of the columns that have a number with a fraction in the first rows.
     pub(super) fractional: Vec<usize>,
+    /// Places of the columns that have a time since 1970 in the first row, and its unit.
+    pub(super) since_1970: Vec<(usize, &'static str)>,
     /// The first row of a text that has no header.
     pub(super) first_row: String,
     /// Whether the lines begin with the time stamps of a serial monitor.
@@ -117,6 +119,7 @@ impl Layout {
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
             fractional: fractional(&layout, &lines),
+            since_1970: since_1970(&layout, &lines),
             ..layout
         })
     }
@@ -137,6 +140,7 @@ impl Layout {
             searched: None,
             two_levels: Vec::new(),
             fractional: Vec::new(),
+            since_1970: Vec::new(),
             first_row: String::new(),
             is_stamped: false,
             remarks: false,
@@ -232,11 +236,7 @@ impl Layout {
                 ));
             }
         };
-        Ok(Place {
-            column: mapping.column,
-            place,
-            unit,
-        })
+        Ok(self.at(mapping.column, place, unit))
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) enum Kind {
     Date,
     /// Hours, minutes and seconds: a time of day or a duration.
     Clock,
+    /// Whole seconds, with the part of a second in another column.
+    Seconds,
 }
 
 /// The content of such a field.

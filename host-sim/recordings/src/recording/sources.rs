@@ -38,11 +38,14 @@ pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -
             _ => String::new(),
         };
         let (name, unit) = (place.column.name(), place.unit.name());
-        let theirs = match layout.has_header() {
-            true => format!("'{}'", layout.names[place.place].escape_debug()),
-            false => format!("column {}", place.place + 1),
+        let theirs = |place: usize| match layout.has_header() {
+            true => format!("'{}'", layout.names[place].escape_debug()),
+            false => format!("column {}", place + 1),
         };
-        format!("{name} from {theirs} ({unit}{with})")
+        let part = place.part.map_or_else(String::new, |part| {
+            format!(" and {} ({})", theirs(part.place), part.unit.name())
+        });
+        format!("{name} from {} ({unit}{with}){part}", theirs(place.place))
     };
     let parts: Vec<_> = places.all().iter().map(part).collect();
     let foreign = places.format.filter(|format| !format.own);

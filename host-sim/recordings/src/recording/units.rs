@@ -60,6 +60,16 @@ impl Unit {
         self.names[0]
     }
 
+    /// The text before this unit at the end of `column`: nothing, or a text with a separator at its end.
+    pub(super) fn before<'a>(&self, column: &'a str) -> Option<&'a str> {
+        let mut before = self.names.iter().filter_map(|name| {
+            let at = column.len().checked_sub(name.len())?;
+            let (before, end) = column.split_at_checked(at)?;
+            end.eq_ignore_ascii_case(name).then_some(before)
+        });
+        before.find(|before| before.is_empty() || before.ends_with(is_separator))
+    }
+
     /// Number of units of time in a second; 1 for another quantity.
     pub(super) const fn per_s(&self) -> f64 {
         match self.scale {
@@ -69,14 +79,20 @@ impl Unit {
     }
 }
 
+/// Whether a character separates the parts of a name.
+pub(super) fn is_separator(c: char) -> bool {
+    matches!(c, '_' | ' ' | '.' | '/' | '-')
+}
+
 const fn unit(names: &'static [&'static str], scale: Scale) -> Unit {
     Unit { names, scale }
 }
 
-const SECONDS: &[&str] = &["s", "sec", "second", "seconds"];
+const SECONDS: &[&str] = &["s", "sec", "secs", "second", "seconds"];
 const MILLISECONDS: &[&str] = &[
     "ms",
     "msec",
+    "msecs",
     "millis",
     "millisec",
     "millisecond",
@@ -85,6 +101,7 @@ const MILLISECONDS: &[&str] = &[
 const MICROSECONDS: &[&str] = &[
     "us",
     "usec",
+    "usecs",
     "micros",
     "microsec",
     "microsecond",
@@ -95,6 +112,7 @@ const MICROSECONDS: &[&str] = &[
 const NANOSECONDS: &[&str] = &[
     "ns",
     "nsec",
+    "nsecs",
     "nanos",
     "nanosec",
     "nanosecond",

@@ -6,7 +6,7 @@ use super::super::endings::Ending;
 use super::super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 use super::super::header;
 use super::super::options::{Column, ReadOptions};
-use super::super::units::Unit;
+use super::super::units::{Quantity, Unit};
 use super::Layout;
 
 /// A column that is read.
@@ -16,6 +16,23 @@ pub(in super::super) struct Place {
     /// Its index in a row.
     pub(in super::super) place: usize,
     pub(in super::super) unit: &'static Unit,
+    /// For whole seconds, the column with the part of a second.
+    pub(in super::super) part: Option<Part>,
+}
+
+/// The column with the part of a second beside one of whole seconds.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Part {
+    /// Its index in a row.
+    pub(in super::super) place: usize,
+    pub(in super::super) unit: &'static Unit,
+}
+
+impl Place {
+    /// The indices in a row of what is read.
+    pub(in super::super) fn indices(self) -> impl Iterator<Item = usize> {
+        std::iter::once(self.place).chain(self.part.map(|part| part.place))
+    }
 }
 
 /// The columns that are read.
@@ -79,16 +96,51 @@ impl Places {
                 return Err(header::unknown_unit(column, place, unit, layout, name));
             }
         };
-        self.columns.push(Place {
-            column,
-            place,
-            unit,
-        });
+        self.columns.push(layout.at(column, place, unit));
         Ok(())
     }
 }
 
 impl Layout {
+    /// The column at `place`, with that of its parts of a second.
+    pub(super) fn at(&self, column: Column, place: usize, unit: &'static Unit) -> Place {
+        let part = (column == Column::T).then(|| self.part_of_second(place, unit));
+        Place {
+            column,
+            place,
+            unit,
+            part: part.flatten(),
+        }
+    }
+
+    /// The only column with the part of a second beside the whole seconds at `place`: its name differs in the
+    /// unit, as `stamp.nanosec` from `stamp.sec`.
+    pub(super) fn part_of_second(&self, place: usize, seconds: &'static Unit) -> Option<Part> {
+        let stem = seconds.before(&self.names[place]);
+        let stem = stem.filter(|_| seconds.per_s() == 1.0 && !self.fractional.contains(&place))?;
+        let units = || {
+            Quantity::Time
+                .units()
+                .iter()
+                .filter(|unit| unit.per_s() > 1.0)
+        };
+        let mut parts = self.names.iter().enumerate().filter_map(|(place, name)| {
+            let unit = units().find(|unit| unit.before(name) == Some(stem))?;
+            Some(Part { place, unit })
+        });
+        let first = parts.next()?;
+        parts.next().is_none().then_some(first)
+    }
+
+    /// Whether the column at `part` has the part of a second beside the whole seconds at `whole`.
+    pub(super) fn is_part_of(&self, part: usize, whole: usize) -> bool {
+        let found = match self.ending(Quantity::Time, whole) {
+            Ending::Unit(unit) => self.part_of_second(whole, unit),
+            Ending::Nothing | Ending::Unknown(_) => None,
+        };
+        found.is_some_and(|found| found.place == part)
+    }
+
     /// The columns to read.
     pub(in super::super) fn places(
         &self,
@@ -125,11 +177,9 @@ impl Layout {
             for found in format.find(&names) {
                 let unit = found.column.quantity().unit(found.unit);
                 if let (Some(unit), None) = (unit, places.get(found.column)) {
-                    places.columns.push(Place {
-                        column: found.column,
-                        place: found.place,
-                        unit,
-                    });
+                    places
+                        .columns
+                        .push(self.at(found.column, found.place, unit));
                 }
             }
         }

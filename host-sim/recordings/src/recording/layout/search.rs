@@ -6,6 +6,7 @@ use super::super::formats::Format;
 use super::super::moment::Moment;
 use super::super::options::{Column, Mapping, ReadOptions};
 use super::super::separator::{Separator, comment};
+use super::super::units::{Quantity, Unit};
 use super::Layout;
 use super::words::{POSITIONS, TIMES, has};
 
@@ -210,6 +211,24 @@ pub(super) fn fractional(layout: &Layout, lines: &[&str]) -> Vec<usize> {
             .any(|row| row.get(*place).is_some_and(is_fraction))
     };
     (0..layout.names.len()).filter(has_fraction).collect()
+}
+
+/// Seconds from 1970 to 2001 and to 2100, between which the time of a log is.
+const SINCE_1970: std::ops::Range<f64> = 1e9..4.1e9;
+
+/// Places of the columns of `layout` that are a time since 1970 in the first of the rows among `lines`, and its unit.
+pub(super) fn since_1970(layout: &Layout, lines: &[&str]) -> Vec<(usize, &'static str)> {
+    let unit = |field: &String| {
+        let number = number(field, layout.separator)?;
+        let units = &Quantity::Time.units()[1..];
+        let fits = |unit: &&Unit| SINCE_1970.contains(&(number / unit.per_s()));
+        units.iter().find(fits).map(Unit::name)
+    };
+    let first = rows(layout, lines).into_iter().next().unwrap_or_default();
+    let fields = first.iter().enumerate();
+    fields
+        .filter_map(|(place, field)| Some((place, unit(field)?)))
+        .collect()
 }
 
 /// Separator and number of fields of a line of numbers.

@@ -27,6 +27,9 @@ impl Layout {
             match (column, self.ending(quantity, place)) {
                 (_, Ending::Unknown(_)) => false,
                 (Column::T, _) if is_duration(name) => false,
+                (Column::T, Ending::Unit(unit)) if self.part_of_second(place, unit).is_some() => {
+                    true
+                }
                 (Column::T, Ending::Unit(_)) if lower.starts_with('t') => {
                     is_named || !lower[1..].starts_with(char::is_alphanumeric)
                 }
@@ -37,18 +40,19 @@ impl Layout {
         };
         let names = self.names.iter().enumerate();
         let is_known = |place: usize| known.iter().any(|known| known.place == place);
-        let mut like = names.filter(|(place, name)| !is_known(*place) && could_be(*place, name));
-        let (place, name) = like.next()?;
+        let like: Vec<_> = names
+            .filter(|(place, name)| !is_known(*place) && could_be(*place, name))
+            .collect();
+        // The part of a second is one of the time beside it.
+        let is_part = |part: usize| like.iter().any(|(whole, _)| self.is_part_of(part, *whole));
+        let mut like = like.iter().filter(|(place, _)| !is_part(*place));
+        let (place, name) = *like.next()?;
         let is_only = like.next().is_none() && self.has_header() && hint::barred(self).is_none();
         let lower = name.trim().to_lowercase();
         let is_sure = has(name, words) || !lower.ends_with(COUNT);
         let is_sure = is_sure && (column == Column::T || !is_indirect(name));
         match self.ending(quantity, place) {
-            Ending::Unit(unit) if is_only && is_sure => Some(Place {
-                column,
-                place,
-                unit,
-            }),
+            Ending::Unit(unit) if is_only && is_sure => Some(self.at(column, place, unit)),
             _ => None,
         }
     }
