@@ -5,6 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use measured::digits::within_a_tenth;
+
 /// The text of a page of docs/theory.
 fn theory(file: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/theory");
@@ -64,6 +66,35 @@ fn pages() -> Vec<Page> {
     };
     let texts = files.map(|file| fs::read_to_string(file.expect("a page").path()).expect("a page"));
     texts.filter_map(page).collect()
+}
+
+/// Words of a text, with a mark at each end of a line.
+fn words(text: &str) -> Vec<&str> {
+    text.lines()
+        .flat_map(|line| line.split_whitespace().chain(["\n"]))
+        .collect()
+}
+
+#[test]
+fn quick_start_shows_what_its_command_prints() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/quick-start.md");
+    let page = fs::read_to_string(page).expect("docs/quick-start.md");
+    let (before, shown) = page.split_once("```text\n").expect("a printed text");
+    let (shown, _) = shown.split_once("```").expect("its end");
+    let command = before
+        .rsplit("```sh\ncargo sim ")
+        .next()
+        .expect("a command");
+    let (command, _) = command.split_once('\n').expect("its end");
+    let output = printed(&command.split(' ').collect::<Vec<_>>());
+    let [shown, now] = [shown, &output].map(words);
+    assert_eq!(shown.len(), now.len(), "{output}");
+    for (shown, now) in shown.iter().zip(now) {
+        match (shown.parse(), now.parse()) {
+            (Ok(shown), Ok(now)) => assert!(within_a_tenth(shown, now), "{shown} is {now}"),
+            _ => assert_eq!(*shown, now, "{output}"),
+        }
+    }
 }
 
 #[test]

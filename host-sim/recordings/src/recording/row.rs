@@ -7,6 +7,7 @@ use terminal::failure::Failure;
 use super::fields::{is_without_value, not_a_number};
 use super::named_fields::Mark;
 use super::numbers::shown;
+use super::thousands::is_grouped;
 
 /// One row, to read fields from.
 pub(super) struct Row<'a> {
@@ -90,7 +91,11 @@ impl Row<'_> {
         match self.parse(text) {
             Some(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64),
             Some(number) if number.is_finite() => {
-                Err(self.failure(column, &self.not_whole(number, column, place)))
+                let mut what = self.not_whole(number, column, place);
+                if is_grouped(text) {
+                    what += "; if the mark separates thousands, write the numbers without it";
+                }
+                Err(self.failure(column, &what))
             }
             _ => Err(self.failure(column, &self.not_a_number(text, column, place))),
         }

@@ -50,6 +50,13 @@ impl Thousands {
     }
 }
 
+/// Whether a mark in a number may separate thousands.
+pub(super) fn is_grouped(text: &str) -> bool {
+    let mut seen = Thousands::default();
+    seen.see(text, 0);
+    seen.grouped.is_some()
+}
+
 #[cfg(test)]
 mod tests {
     use crate::recording::read_log as read;
@@ -75,6 +82,12 @@ mod tests {
                 let text = format!("time;pos\n{rows}30;{}\n", decimal.replace(',', mark));
                 read(&text, columns).unwrap();
             }
+        }
+        // Counts have no fraction.
+        for (text, tells) in [("1.002", true), ("0.002", false), ("1.25", false)] {
+            let error = read(&format!("t;counts_large\n0,001;{text}\n"), "").unwrap_err();
+            let said = "; if the mark separates thousands, write the numbers without it";
+            assert_eq!(error.ends_with(said), tells, "{error}");
         }
         // No number below 1000 but above 99, or from 1000 on but below 10000.
         for x in [20, 500] {
