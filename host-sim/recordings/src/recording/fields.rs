@@ -68,7 +68,7 @@ fn is_date(text: &str) -> bool {
         && (text.contains(':') || begins && (text.matches('-').count() > 1 || text.contains('t')))
 }
 
-/// Whether a field is a number and a unit: 0.5 sec.
+/// Whether a field is a number and a unit: 0.5 deg.
 fn has_unit(text: &str) -> bool {
     let end = text
         .trim_end_matches(|c: char| c.is_alphabetic() || matches!(c, '/' | '\u{b0}' | '%' | '.'));
@@ -164,8 +164,8 @@ mod tests {
                 "is not a number; write it in s, as 2025-03-01T12:00:00.000",
             ),
             (
-                "t,counts_large\n0.5 sec,0\n",
-                "'0.5 sec' is not a number; write it without its unit",
+                "t,counts_large\n0.5 rad,0\n",
+                "'0.5 rad' is not a number; write it without its unit",
             ),
             (
                 "t,counts_large\ns,counts\n0,0\n",

@@ -7,7 +7,7 @@ use super::layout::{Part, Place};
 use super::moment::{DAY_NS, Kind, Moment};
 use super::row::Row;
 use super::times::NEAR;
-use super::units::Unit;
+use super::units::{Quantity, Unit};
 
 /// A day, s.
 const DAY_S: f64 = DAY_NS as f64 / 1e9;
@@ -47,8 +47,11 @@ impl OwnTimes {
             None => Moment::parse(row.text(column, at.place)?),
         };
         let Some(Moment { kind, ns }) = moment else {
-            let t = scaled(row, at, 1.0)?;
-            let form = *self.form.get_or_insert(Form::Number { unit: at.unit });
+            let (t, unit) = match with_unit(row.text(column, at.place)?) {
+                Some(found) => found,
+                None => (scaled(row, at, 1.0)?, at.unit),
+            };
+            let form = *self.form.get_or_insert(Form::Number { unit });
             return match form {
                 Form::Number { unit } => Ok(self.wraps.unwrapped(t, &periods(unit), row.line)),
                 Form::Moment { .. } => Err(mixed(row, at)),
@@ -103,6 +106,16 @@ impl OwnTimes {
         });
         form.map(str::to_owned).into_iter().chain(wrap)
     }
+}
+
+/// The time, s, and the unit of a field that has its unit in it, as MATLAB writes durations: `0.5 sec`.
+fn with_unit(text: &str) -> Option<(f64, &'static Unit)> {
+    let is_number = text.ends_with(|c: char| c.is_ascii_digit());
+    let mut units = Quantity::Time.units().iter().filter(|_| !is_number);
+    let (number, unit) = units.find_map(|unit| Some((unit.before(text)?, unit)))?;
+    let number: f64 = number.trim_end().parse().ok()?;
+    let is_time = number.is_finite();
+    is_time.then(|| (unit.scale.of(number, 1.0), unit))
 }
 
 /// The moment that whole seconds and the part of a second in another column state.

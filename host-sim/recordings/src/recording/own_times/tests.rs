@@ -57,6 +57,18 @@ fn dates_and_times_of_day_are_seconds_from_midnight_on() {
 }
 
 #[test]
+fn times_may_have_their_unit_in_the_field() {
+    let recording = read(&log(&["0 sec", "0.0625 sec", "0.125 sec"]), "").unwrap();
+    assert_eq!(recording.t, [0.0, 0.0625, 0.125]);
+    let recording = read(&log(&["0 ms", "62.5 ms", "1.25e-1 s"]), "t=t:us").unwrap();
+    assert_eq!(recording.t, [0.0, 0.0625, 0.125]);
+    for wrong in ["1 min", "1 deg", "nan s", "s", "1 2 s"] {
+        let error = read(&log(&["0 s", wrong]), "").unwrap_err();
+        assert!(error.starts_with("r.csv: line 3: column t: "), "{error}");
+    }
+}
+
+#[test]
 fn signed_counter_wraps_to_negative_times() {
     let text =
         "time_us,counts\n2147481648,0\n2147482648,1\n-2147483648,2\n-2147482648,3\n-2147481648,4\n";
