@@ -81,10 +81,12 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// noise      with stamps R = R (1 - 0.1 ρ)       ρ = e e' / S within ±1, of Σ w_i e_i, Σ w_i S_i, e' the edge before; R
 ///            within 3e-4 and 0.1 counts²; less 0.02 ρ S where ρ < 0 as at the edge before, and the tick before had
 ///            an edge or another count; at 0.1 counts² no stamp is used
-///            without, or with stamps that are not used, R = R + 0.03 R (min(s² / V, 1.5) - 0.5) - 0.02 s s'
-///            s = Σ w_i s_i, s' the sample before;
-///            V = P_00 + R of the last member; s s' within ±V, and 0 where it is the first one below 0; R within
-///            1e-5 and 1e4 counts²
+///            without, or with stamps that are not used, s = Σ w_i s_i, s' the sample before, V = P_00 + R of the
+///            last member; R within 1e-5 and 1e4 counts²:
+///            R = 0.85 R where s² > V / 2 and s is at least the ninth of one sign in a row; else
+///            R = R + a R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s s' within ±V
+///            a = 0.03, but 0.0009 where the count stays and s² < V / 2. Of s s' < 0 after one that was not, at
+///            most 1/4 count², times 0.03; and 0 unless this count and the one before are new
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
 /// ```
 /// A density that fills the interval is uniform, and its ends are √3 deviations from its mean. The tails of
@@ -318,7 +320,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
                 }
                 state.correct_by_edge(&edge, ends, moved)
             }
-            _ => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS || !stamped),
+            _ => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS || !stamped, moved),
         };
         let likelihood = state.weigh(&judged, over.change, S::NOISE);
         if state.still >= self.rest {

@@ -28,8 +28,8 @@ pub struct ModelBankState<const K: usize> {
     pub(super) noise: f32,
     /// Innovation of the edge, or shift by the count, before, counts.
     innovation: f32,
-    /// Whether it and the one before had opposite signs.
-    alternates: bool,
+    /// How many in a row had the sign of the one before; below 0, how many the opposite one.
+    signs: i8,
 }
 
 /// A member with less weight is reset.
@@ -85,7 +85,7 @@ impl<const K: usize> ModelBankState<K> {
             rung: FIRST_RUNG,
             noise,
             innovation: 0.0,
-            alternates: false,
+            signs: 0,
         }
     }
 
@@ -188,7 +188,12 @@ impl<const K: usize> ModelBankState<K> {
     /// Corrects all members by the quantisation interval of the count, whose ends have truncated `ends` before,
     /// and R by the shifts if `learns`.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self, ends: &Ends, learns: bool) -> Judged<K> {
+    pub(super) fn correct_by_interval(
+        &mut self,
+        ends: &Ends,
+        learns: bool,
+        moved: bool,
+    ) -> Judged<K> {
         let expected = self.members[K - 1].position;
         let mut likelihoods = [Likelihood::default(); K];
         let (mut shift, mut variance) = (0.0, 1.0);
@@ -199,7 +204,7 @@ impl<const K: usize> ModelBankState<K> {
             variance = correction.variance;
         }
         if learns {
-            self.learn_noise_of_counts(shift, variance);
+            self.learn_noise_of_counts(shift, variance, moved);
         }
         Judged {
             likelihoods,
@@ -252,7 +257,7 @@ impl<const K: usize> ModelBankState<K> {
         self.rung = FIRST_RUNG;
         self.noise = noise;
         self.innovation = 0.0;
-        self.alternates = false;
+        self.signs = 0;
         Likelihood::CERTAIN
     }
 
@@ -336,7 +341,7 @@ impl ModelBankState<3> {
             rung: self.rung + first as u32,
             noise: self.noise,
             innovation: self.innovation,
-            alternates: self.alternates,
+            signs: self.signs,
         }
     }
 }

@@ -75,7 +75,9 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
     // Moves every position by 0.4 counts.
     state.drive(0.8);
     state.noise = ends;
-    let likelihoods = state.correct_by_interval(Ends::of(true), false).likelihoods;
+    let likelihoods = state
+        .correct_by_interval(Ends::of(true), false, false)
+        .likelihoods;
     let variance = f64::from(Member::START.covariance[0]);
     let [noisy, exact] = [ends, 1e-9].map(|ends| summed(0.4, variance, f64::from(ends))[0]);
     for likelihood in likelihoods {
@@ -85,34 +87,54 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
     }
 }
 
-/// Three shifts of alternating signs are noise, two are none, and those of one sign are a motion that the members
-/// lag. R also follows the size of the shifts.
+/// Three shifts of alternating signs are noise, two are less of it if both counts are new ones and else none, and
+/// those of one sign are a motion that the members lag. R also follows the size of the shifts.
 #[test]
 fn noise_of_a_count_grows_where_shifts_alternate() {
-    let after = |positions: &[f32], learns: bool| {
+    // Of counts that are new ones, or stay.
+    let among = |positions: &[f32], learns: bool, is_new: bool| {
         let mut state = ModelBankState::<3>::start(Count(0), 0.01);
+        state.still = u32::from(!is_new);
         for position in positions {
             for member in &mut state.members {
                 *member = Member::START;
                 member.position = *position;
             }
-            state.correct_by_interval(Ends::of(true), learns);
+            state.correct_by_interval(Ends::of(true), learns, is_new);
         }
         state.noise
     };
+    let after = |positions: &[f32]| among(positions, true, true);
     // 2 % of the variance of the position with its noise, and 3 % of R for a size that is beyond the usual one.
     let [by_size, by_product] = [0.03 * 0.01, 0.02 * (1.0 / 12.0 + 0.01)];
     let near = |found: f32, expected: f32| {
         assert!((found - 0.01 - expected).abs() < 1e-4, "{found} {expected}");
     };
-    near(after(&[2.0], true), by_size);
-    near(after(&[2.0, -2.0], true), 2.0 * by_size);
-    near(after(&[2.0, -2.0, 2.0], true), 3.0 * by_size + by_product);
-    near(after(&[2.0, 2.0], true), 2.0 * by_size - by_product);
-    // No shift: half of a usual one is missing.
-    near(after(&[0.0; 4], true), -4.0 * 0.015 * 0.01);
-    assert_eq!(after(&[2.0, -2.0, 2.0], false), 0.01);
-    assert_eq!(after(&[2.0; 20], true), LEAST_OF_COUNT);
+    let by_turn = 0.03 * 0.25;
+    near(after(&[2.0]), by_size);
+    near(after(&[2.0, -2.0]), 2.0 * by_size + by_turn);
+    near(among(&[2.0, -2.0], true, false), 2.0 * by_size);
+    let turned = 0.01 + 2.0 * by_size + by_turn;
+    near(
+        after(&[2.0, -2.0, 2.0]),
+        1.03 * turned + 0.02 * (1.0 / 12.0 + turned) - 0.01,
+    );
+    near(
+        among(&[2.0, -2.0, 2.0], true, false),
+        3.0 * by_size + by_product,
+    );
+    near(after(&[2.0, 2.0]), 2.0 * by_size - by_product);
+    // No shift: half of a usual one is missing, and of a count that stays a part of it.
+    near(after(&[0.0; 4]), -4.0 * 0.015 * 0.01);
+    near(among(&[0.0; 40], true, false), -40.0 * 0.03 * 0.015 * 0.01);
+    assert_eq!(among(&[2.0, -2.0, 2.0], false, true), 0.01);
+    // From the ninth shift of one sign on the members lag.
+    assert!(after(&[2.0; 8]) < 0.01 - 6.0 * (by_product - by_size));
+    for shifts in [9, 15] {
+        let fall = after(&[2.0; 20][..shifts]) / after(&[2.0; 20][..shifts - 1]);
+        assert!((fall - 0.85).abs() < 1e-3, "{fall}");
+    }
+    assert_eq!(after(&[2.0; 40]), LEAST_OF_COUNT);
 }
 
 /// Two innovations of alternating signs raise R by a tenth, a third one of edges in every tick by a share of its
@@ -165,7 +187,7 @@ fn two_neighbours_with_the_larger_weights_are_kept() {
     bank.drive(3.0);
     for _ in 0..100 {
         bank.predict(&ladder, 3.0);
-        bank.correct_by_interval(Ends::of(true), false);
+        bank.correct_by_interval(Ends::of(true), false, false);
     }
     let weighed = |weights: [f32; 3]| {
         let mut bank = bank;

@@ -5,6 +5,7 @@ mod constant_speed;
 mod definition;
 mod driven;
 mod noise;
+mod noisy_counts;
 mod uneven;
 
 use estimator_core::{

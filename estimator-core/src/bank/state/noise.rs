@@ -23,6 +23,17 @@ const GAIN_OF_SIZE: f32 = 0.03;
 const USUAL: f32 = 0.5;
 const LARGEST: f32 = 1.5;
 
+/// Change of R in the product where a count turns back in the next tick, and the largest product there, counts².
+const GAIN_OF_TURN: f32 = 0.03;
+const LARGEST_TURN: f32 = 0.25;
+
+/// Part of a decrease of R that a count has which stays: it says little of the noise.
+const STAYING: f32 = 0.03;
+
+/// Shifts of one sign in a row from which on large ones are a motion that the members lag, and R after each, in R.
+const LAGGING: i8 = 8;
+const FALL: f32 = 0.85;
+
 impl<const K: usize> ModelBankState<K> {
     /// The variance R of the position of a boundary, counts², as estimated from the innovations of
     /// edges. Without stamps, or where they are not used, it is the variance of the noise of a count.
@@ -37,20 +48,21 @@ impl<const K: usize> ModelBankState<K> {
         self.noise < LARGEST_OF_BOUNDARY
     }
 
-    /// The product of an innovation or a shift and the one before. A negative one is 0 unless it follows another:
+    /// The product of an innovation or a shift and the one before, and whether that one had alternated: three
     /// alternating innovations are noise, but a motion that the members cannot follow makes two alternate, and
     /// seldom three.
     #[inline(always)]
-    fn product(&mut self, innovation: f32) -> f32 {
+    fn product(&mut self, innovation: f32) -> (f32, bool) {
         let product = innovation * self.innovation;
-        let alternated = self.alternates;
+        let alternated = self.signs < 0;
         self.innovation = innovation;
-        self.alternates = product < 0.0;
-        if self.alternates && !alternated {
-            0.0
-        } else {
-            product
-        }
+        self.signs = match product < 0.0 {
+            true if alternated => self.signs.saturating_sub(1),
+            true => -1,
+            false if alternated => 1,
+            false => self.signs.saturating_add(1),
+        };
+        (product, alternated)
     }
 
     /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the one
@@ -59,21 +71,39 @@ impl<const K: usize> ModelBankState<K> {
     #[inline(always)]
     pub(super) fn learn_noise_of_edges(&mut self, error: f32, variance: f32, moved: bool) {
         let correlation = limited(error * self.innovation / variance, 1.0);
-        let product = self.product(error);
+        let (product, alternated) = self.product(error);
         let mut noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
-        if moved && product < 0.0 {
+        if moved && alternated && product < 0.0 {
             noise -= GAIN_OF_PRODUCT * limited(product, variance);
         }
         // Both ends are constants: the panic of `clamp` is removed.
         self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
     }
 
-    /// Changes R by the `shift` of a position whose variance with its noise is `variance`.
+    /// Changes R by the `shift` of a position whose variance with its noise is `variance`. `moved` if the count
+    /// before was a new one. A count that turns back at once is noise too, but less than a count of it may do so
+    /// once in a while: a product below 0 then counts although the one before was none.
     #[inline(always)]
-    pub(super) fn learn_noise_of_counts(&mut self, shift: f32, variance: f32) {
-        let product = limited(self.product(shift), variance);
+    pub(super) fn learn_noise_of_counts(&mut self, shift: f32, variance: f32, moved: bool) {
+        let is_new = self.still == 0;
+        let (product, alternated) = self.product(shift);
         let size = smaller(shift * shift / variance, LARGEST) - USUAL;
-        let noise = self.noise + GAIN_OF_SIZE * size * self.noise - GAIN_OF_PRODUCT * product;
+        let noise = if size > 0.0 && self.signs >= LAGGING {
+            self.noise * FALL
+        } else {
+            let gain = match size < 0.0 && !is_new {
+                true => GAIN_OF_SIZE * STAYING,
+                false => GAIN_OF_SIZE,
+            };
+            let grown = if product >= 0.0 || alternated {
+                GAIN_OF_PRODUCT * limited(product, variance)
+            } else if is_new && moved {
+                GAIN_OF_TURN * limited(product, LARGEST_TURN)
+            } else {
+                0.0
+            };
+            self.noise + gain * size * self.noise - grown
+        };
         // Both ends are constants: the panic of `clamp` is removed.
         self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);
     }

@@ -44,7 +44,7 @@ fn bank_starts_anew_where_a_likelihood_is_no_number() {
         state.members[2].covariance[0] = -0.1;
         state.noise = f32::NAN;
         state.innovation = 2.0;
-        state.alternates = true;
+        state.signs = -3;
         let mut likelihoods = [Likelihood::CERTAIN; 3];
         likelihoods[k].factor = factor;
         state.weigh(&judged(likelihoods, 0.0), 1e-4, 1e-3);
@@ -110,7 +110,7 @@ fn interval_says_how_far_off_the_last_member_is() {
         member.position = position;
         member.covariance[0] = 1e-2;
     }
-    let off = state.correct_by_interval(Ends::of(true), false).off;
+    let off = state.correct_by_interval(Ends::of(true), false, false).off;
     assert_eq!(off, state.members[1].position + 40.0);
     // The nearer end of the interval is 0.5 counts from its middle.
     assert!((30.0..41.0).contains(&off), "{off}");

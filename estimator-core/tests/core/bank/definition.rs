@@ -23,7 +23,9 @@ pub(super) struct Definition {
     stamps: bool,
     noise: f64,
     innovation: f64,
-    alternates: bool,
+    /// How many innovations in a row had the sign of the one before, and how many the opposite one.
+    same: u32,
+    opposite: u32,
     /// Time without a change, periods.
     still: f64,
 }
@@ -133,7 +135,8 @@ impl Definition {
             stamps: edges.is_some(),
             noise: if edges.is_some() { 1e-3 } else { 1e-5 },
             innovation: 0.0,
-            alternates: false,
+            same: 0,
+            opposite: 0,
             still: 0.0,
         };
         let mut velocities = vec![0.0];
@@ -217,13 +220,21 @@ impl Definition {
         }
         if edge.is_some() || !is_exact {
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
-            let is_first = correlation < 0.0 && !self.alternates;
+            let is_first = correlation < 0.0 && self.opposite == 0;
             let product = if is_first {
                 0.0
             } else {
                 correlation * variance
             };
-            self.alternates = correlation < 0.0;
+            let turned = if is_first && moved && moved_before {
+                (-error * self.innovation).min(0.25)
+            } else {
+                0.0
+            };
+            (self.same, self.opposite) = match correlation < 0.0 {
+                true => (0, self.opposite + 1),
+                false => (self.same + 1, 0),
+            };
             self.innovation = error;
             self.noise = if edge.is_some() {
                 let added = if moved_before {
@@ -234,7 +245,17 @@ impl Definition {
                 (self.noise * (1.0 - 0.1 * correlation) + added).clamp(3e-4, 0.1)
             } else {
                 let size = (error * error / variance).min(1.5) - 0.5;
-                (self.noise * (1.0 + 0.03 * size) - 0.02 * product).clamp(1e-5, 1e4)
+                let gain = if size < 0.0 && !moved {
+                    0.03 * 0.03
+                } else {
+                    0.03
+                };
+                let noise = if size > 0.0 && self.same >= 8 {
+                    0.85 * self.noise
+                } else {
+                    self.noise * (1.0 + gain * size) - 0.02 * product + 0.03 * turned
+                };
+                noise.clamp(1e-5, 1e4)
             };
         }
         let change = interval * self.period / (members as f64 - 1.0);
