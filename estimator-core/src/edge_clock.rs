@@ -38,9 +38,11 @@ impl EdgeClock {
         if !(clock.is_positive() && clock.0 >= rate.0) {
             return Err(DesignError::CLOCK);
         }
-        Ok(Self {
-            period: (rate.0 / clock.0) as f32,
-        })
+        let period = (rate.0 / clock.0) as f32;
+        if !period.is_normal() {
+            return Err(DesignError::CLOCK);
+        }
+        Ok(Self { period })
     }
 
     /// The latest edge, if it came since the last sample, one control period ago, and is a boundary of

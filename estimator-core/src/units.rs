@@ -212,7 +212,7 @@ impl Scale {
     /// The factor for an encoder of `counts_per_rev` (four times its lines) at a control rate.
     ///
     /// # Errors
-    /// [`DesignError::RATE`], [`DesignError::COUNTS_PER_REV`].
+    /// [`DesignError::RATE`], also where the factor is beyond the numbers of f32; [`DesignError::COUNTS_PER_REV`].
     pub const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
             return Err(DesignError::RATE);
@@ -220,9 +220,12 @@ impl Scale {
         if counts_per_rev == 0 {
             return Err(DesignError::COUNTS_PER_REV);
         }
-        let factor = 2.0 * core::f64::consts::PI * rate.0 / counts_per_rev as f64;
+        let factor = (2.0 * core::f64::consts::PI * rate.0 / counts_per_rev as f64) as f32;
+        if !factor.is_normal() {
+            return Err(DesignError::RATE);
+        }
         Ok(Self {
-            rad_per_s_per_count_per_tick: factor as f32,
+            rad_per_s_per_count_per_tick: factor,
         })
     }
 }

@@ -23,11 +23,12 @@ const LONGEST_FILTER_TIME: f64 = 1e4;
 /// ```
 /// Far from the count v changes by r a tick towards the parabola of braking. Near it the differentiator
 /// is linear, with both poles at `1 - 1/h`, and comes to rest without a limit cycle. The larger h is, the
-/// more it smooths, and the more it lags: by 2 h - 3/2 ticks while it is linear. With h of one tick and a
-/// large r it is the finite difference.
+/// more it smooths, and the more it lags: by 2 h - 3/2 ticks while it is linear, which is up to |v| < r h. With
+/// h of one tick and a large r it is the finite difference.
 ///
-/// If x lies more than 2^15 counts beside the count, the differentiator restarts there with the finite
-/// difference as v. `acceleration` is r in rad/s², valid from 1e-12 to 1e6 counts/tick²; `filter_time` is
+/// A faster shaft is beyond the parabola of braking: x stays v²/(2 r) counts behind it. If x lies more than 2^15
+/// counts beside the count, the differentiator restarts there with the finite difference as v. From
+/// |v| = 256 sqrt(r) on it does so again and again, and does not follow a constant velocity. `acceleration` is r in rad/s², valid from 1e-12 to 1e6 counts/tick²; `filter_time` is
 /// h in s, valid up to 10^4 ticks. A time below one tick is one tick, so that parameters for one rate
 /// serve a lower one too.
 ///

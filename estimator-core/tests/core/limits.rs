@@ -47,6 +47,13 @@ fn cutoff_is_a_millionth_to_half_of_the_rate() {
     }
     let refused = Scale::new(0, RATE).err();
     assert_eq!(refused, Some(DesignError::COUNTS_PER_REV));
+    // Factors that f32 does not hold.
+    for (counts, rate) in [(1, 1e39), (u32::MAX, 1e-300)] {
+        assert_eq!(
+            Scale::new(counts, Hertz(rate)).err(),
+            Some(DesignError::RATE)
+        );
+    }
 }
 
 /// The pole of a first-order low-pass is `exp(-2 π cutoff / rate)`: after a step of the velocity, n
