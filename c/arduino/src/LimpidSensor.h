@@ -82,8 +82,11 @@ private:
     uint32_t counted()
     {
         const float turn = inner.getMechanicalAngle() * (1.0f / 6.28318531f);
-        const uint32_t within = (uint32_t)(int32_t)(turn * (float)counts_per_rev + 0.5f);
-        return (uint32_t)inner.getFullRotations() * counts_per_rev + within;
+        const float nearest = turn * (float)counts_per_rev + 0.5f;
+        /* The angle of some sensors is negative below 0, where a conversion rounds up. */
+        int32_t within = (int32_t)nearest;
+        if ((float)within > nearest) within -= 1;
+        return (uint32_t)inner.getFullRotations() * counts_per_rev + (uint32_t)within;
     }
 
     Sensor &inner;

@@ -106,8 +106,25 @@ fn header(options: &Export) -> Result<(), Failure> {
     write_whole(out, header.as_bytes())
 }
 
-/// A name in C.
+/// Keywords of C23 and C++23 that begin with a letter, and the name that both give a meaning.
+const RESERVED: &str = "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t \
+    char8_t class co_await co_return co_yield compl concept const const_cast consteval constexpr constinit continue \
+    decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if \
+    inline int long main mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public \
+    register reinterpret_cast requires restrict return short signed sizeof static static_assert static_cast struct \
+    switch template this thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using \
+    virtual void volatile wchar_t while xor xor_eq";
+
+/// A name in C that is none of the language and none of limpid.h.
 fn identifier(text: &str) -> Result<String, String> {
+    let is_ours = text.to_ascii_lowercase().starts_with("limpid_");
+    if is_ours || RESERVED.split_ascii_whitespace().any(|word| word == text) {
+        return Err(format!(
+            "{} has a meaning in {} already; take another name",
+            text,
+            if is_ours { "limpid.h" } else { "C or C++" }
+        ));
+    }
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
     match text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(is_part) {
         true => Ok(text.to_owned()),

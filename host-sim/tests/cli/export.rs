@@ -97,4 +97,15 @@ fn constant_for_c_has_the_name_that_is_asked_for() {
             "{error}"
         );
     }
+    for (name, owner) in [
+        ("int", "C or C++"),
+        ("class", "C or C++"),
+        ("main", "C or C++"),
+        ("limpid_pll_update", "limpid.h"),
+        ("LIMPID_H", "limpid.h"),
+    ] {
+        let error = folder.refused(&["export", "--c", "--estimator", "pll", "--constant", name]);
+        let said = format!("{name} has a meaning in {owner} already; take another name");
+        assert!(error.contains(&said), "{error}");
+    }
 }

@@ -99,12 +99,15 @@ fn motion(velocities: &[(f64, f64)]) -> Vec<(u64, f64, f64)> {
     motion
 }
 
+/// The angle within a turn, in counts, as a sensor of SimpleFOC shows it.
+type Within = fn(f64) -> f64;
+
 /// Velocity and standard deviation of the sensor at each time of a motion, with 4096 counts per turn.
-fn sensed(program: &Path, motion: &[(u64, f64, f64)]) -> Vec<[f64; 2]> {
+fn sensed(program: &Path, motion: &[(u64, f64, f64)], within: Within) -> Vec<[f64; 2]> {
     let counts = 4096.0 / std::f64::consts::TAU;
     let mut input = String::new();
     for (now, angle, _) in motion {
-        let shown = (angle * counts).floor().rem_euclid(4096.0) / counts;
+        let shown = within((angle * counts).floor()) / counts;
         writeln!(input, "{now} {shown:.7}").expect("a string");
     }
     let mut child = Command::new(program)
@@ -163,7 +166,8 @@ fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
     // A sensor that is initialised again knows no motion.
     let mut again = motion(&[(3.0, 0.2)]);
     again.push((0, again[again.len() - 1].1, 0.0));
-    let velocities = sensed(&program, &again);
+    let positive: Within = |counts| counts.rem_euclid(4096.0);
+    let velocities = sensed(&program, &again, positive);
     let [.., [before, _], [after, _]] = velocities[..] else {
         panic!("{velocities:?}");
     };
@@ -172,9 +176,20 @@ fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
         "{before} {after}"
     );
 
+    // Through 0 and downwards, also with an angle that is negative there, as that of Hall sensors.
+    let down = self::motion(&[(0.0, 0.5), (-0.5, 4.0)]);
+    for within in [positive, |counts| counts % 4096.0] {
+        let velocities = sensed(&program, &down, within);
+        let settled = down.iter().zip(&velocities).skip(2000);
+        let worst = settled.fold(0.0, |worst: f64, ((_, _, truth), [v, _])| {
+            worst.max((v - truth).abs())
+        });
+        assert!(worst < 0.02, "{worst}");
+    }
+
     // One count is 1.5 mrad: in a loop of 375 µs it is a jump of 4.1 rad/s of a plain difference.
     let motion = motion(&[(0.5, 3.0), (0.0, 2.0), (-40.0, 2.0), (0.0, 2.0)]);
-    let sensed = sensed(&program, &motion);
+    let sensed = sensed(&program, &motion, positive);
     assert_eq!(sensed.len(), motion.len());
     let at = |from_s: f64, to_s: f64| {
         let us = [from_s, to_s].map(|s| (s * 1e6) as u64 + 1_000_000);
