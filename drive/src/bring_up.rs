@@ -29,19 +29,21 @@ const NOISE: u32 = 2;
 type Check = fn(&'static str, &Seen) -> Vec<Line>;
 
 /// Checks a board step by step, prints a line for each, and notes in the settings whether the signs are
-/// verified. With `turns`, the shafts are turned by hand at first. After a failed check or an interrupt the
-/// signs are not verified, even if they were before: whoever checks a board again may have changed its wires.
+/// verified. With `turns`, the shafts are turned by hand at first. From the begin until the last check has passed
+/// the signs are not verified, even if they were before: whoever checks a board again may have changed its wires.
 ///
 /// # Errors
 /// [`Failure::Check`] if a check failed or the checks were interrupted; otherwise those of the session.
 pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Failure> {
     let answer = board.compatible()?;
+    // At the begin: a tool that is killed sets nothing at its end.
+    verify(board, false)?;
     let mut lines = vec![identity(&answer)];
     show(board, &lines[0])?;
     let mut pulses = Vec::new();
     if turns && failed(&lines) == 0 {
         match turns::by_hand(board, &answer) {
-            Err(Failure::Check(_)) if interrupt::came() => return interrupted(board),
+            Err(Failure::Check(_)) if interrupt::came() => return Err(interrupted()),
             found => pulses = found?,
         }
         turns::shown(board, &pulses, &mut lines)?;
@@ -72,7 +74,7 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
                 pulses.extend(seen.indices);
                 found
             }
-            Err(Failure::Check(_)) if interrupt::came() => return interrupted(board),
+            Err(Failure::Check(_)) if interrupt::came() => return Err(interrupted()),
             Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
             Err(failure) => return Err(failure),
         };
@@ -82,13 +84,13 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
         turns::shown(board, &pulses, &mut lines)?;
     }
     let wrong = failed(&lines);
-    verify(board, wrong == 0)?;
     if wrong > 0 {
         return Err(Failure::Check(format!(
             "bring-up: {wrong} of {} checks failed; scenes in closed loop are refused",
             lines.len()
         )));
     }
+    verify(board, true)?;
     if store {
         return settings::store(board);
     }
@@ -106,14 +108,13 @@ fn verify(board: &mut Board, are_right: bool) -> Result<(), Failure> {
     board.change(command, verified.facts().name)
 }
 
-/// Ends after an interrupt, which is no failed check.
-fn interrupted(board: &mut Board) -> Result<(), Failure> {
-    verify(board, false)?;
-    Err(Failure::Check(
+/// The end after an interrupt, which is no failed check.
+fn interrupted() -> Failure {
+    Failure::Check(
         "bring-up: interrupted before its last check; scenes in closed loop are refused until it passes or the \
          board is reset"
             .to_owned(),
-    ))
+    )
 }
 
 /// Prints lines and adds them to those before.

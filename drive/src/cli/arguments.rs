@@ -119,7 +119,7 @@ pub(super) enum Action {
     },
     /// Check a new board and its motors step by step, and verify the signs of encoders and currents: scenes
     /// in closed loop are refused before. Moves the motors, at most with 0.3 A and 0.15 A. After a failed
-    /// check or an interrupt the signs are not verified, even if they were, until the next reset
+    /// check or an early end the signs are not verified, even if they were, until the next reset
     #[command(
         after_help = "Examples:\n  cargo drive bring-up --turns\n  cargo drive bring-up --store"
     )]

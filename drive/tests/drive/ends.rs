@@ -237,6 +237,42 @@ fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
     }
 }
 
+/// The command that takes back the verification of the signs.
+fn unverified() -> Command {
+    Command::Set {
+        setting: Setting::SignsVerified.number(),
+        value: 0.0,
+    }
+}
+
+/// No command among these changes a setting.
+fn assert_sets_nothing(commands: &[Command]) {
+    let is_set = |command: &Command| matches!(command, Command::Set { .. });
+    assert!(!commands.iter().any(is_set), "{commands:?}");
+}
+
+/// A tool that is killed leaves no earlier verification: it is taken back before a motor moves.
+#[cfg(unix)]
+#[test]
+fn killed_bring_up_leaves_no_earlier_verification() {
+    let board = Board::new(Script {
+        settings: Settings::COMMISSIONED,
+        measures: Some([(0.0, 1.0); 2]),
+        ..Script::default()
+    });
+    let mut tool = board
+        .tool(&["bring-up"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    board.wait_for(unverified());
+    board.wait_for(ARM);
+    tool.kill().unwrap();
+    tool.wait().unwrap();
+    assert_sets_nothing(&board.commands());
+}
+
 /// An interrupt is no failed check, and leaves no earlier verification.
 #[cfg(unix)]
 #[test]
@@ -252,6 +288,7 @@ fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
+    board.wait_for(unverified());
     board.wait_for(ARM);
     let id = tool.id().to_string();
     let killed = Process::new("kill").args(["-INT", &id]).status().unwrap();
@@ -266,10 +303,5 @@ fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
     let end = "error: bring-up: interrupted before its last check; scenes in closed loop are refused until it \
                passes or the board is reset\n";
     assert!(said.ends_with(end), "{said}");
-    let unverified = Command::Set {
-        setting: Setting::SignsVerified.number(),
-        value: 0.0,
-    };
-    let commands = board.commands();
-    assert!(commands.contains(&unverified), "{commands:?}");
+    assert_sets_nothing(&board.commands());
 }
