@@ -36,6 +36,8 @@ type Check = fn(&'static str, &Seen) -> Vec<Line>;
 /// [`Failure::Check`] if a check failed or the checks were interrupted; otherwise those of the session.
 pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Failure> {
     let answer = board.compatible()?;
+    // A scene that another program has begun would move the motors in the first check.
+    board.disarm()?;
     // At the begin: a tool that is killed sets nothing at its end.
     verify(board, false)?;
     let mut lines = vec![identity(&answer)];

@@ -31,6 +31,9 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
              the currents and set zero and gain by hand: cargo drive settings zero-large=2051.5 gain-large=1.01"
         )));
     }
+    // A scene that another program has begun would move the motors, and the monitors learn their zeros while
+    // the amplifiers are disabled.
+    board.disarm()?;
     let before = settings::present(board)?;
     announce(board);
     let mut seen = measured(board, &answer)?;

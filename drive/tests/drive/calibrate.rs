@@ -31,7 +31,7 @@ fn board(measures: [(f32, f32); 2]) -> Board {
 fn afterwards(commands: &[Command]) -> Vec<Command> {
     let commands = deduplicated(sorted(commands).0);
     let excite = Command::Request(Request::Select(SceneKind::Excite.number()));
-    let [Command::Settings, ARM, select, DISARM, rest @ ..] = &commands[..] else {
+    let [DISARM, Command::Settings, ARM, select, DISARM, rest @ ..] = &commands[..] else {
         panic!("{commands:?}");
     };
     assert_eq!(*select, excite);
@@ -102,6 +102,21 @@ fn calibrate_sets_zero_and_gain_of_both_motors() {
         assert!(shown.contains(&format!(" to {new}")), "{shown}");
     }
     assert!(said.contains("settings --store keeps them"), "{said}");
+}
+
+#[test]
+fn procedures_disarm_a_board_that_runs_a_scene_first() {
+    for procedure in ["bring-up", "calibrate"] {
+        let board = Board::new(Script {
+            begin: Mode::Running,
+            ..script(MEASURES)
+        });
+        let (output, commands) = board.run(&[procedure]);
+        let first = sorted(&commands).0.first().copied();
+        assert_eq!(first, Some(DISARM), "{procedure}: {output:?}");
+        let [shown, _] = text(&output);
+        assert!(shown.contains("motor"), "{procedure}: {shown}");
+    }
 }
 
 #[test]
