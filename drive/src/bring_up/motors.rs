@@ -14,6 +14,9 @@ const WRONG: [f64; 2] = [0.3, 3.0];
 /// Bounds outside of which the device file should be identified anew: it is assumed good to 15 %, and the
 /// estimate here to as much.
 const DIFFERS: [f64; 2] = [0.7, 1.4];
+/// Least size of a response over that of the device file from which on its sign means something: the pull of the
+/// coupler and friction leave a few per cent.
+const HARDLY: f64 = 0.1;
 /// Least part of the acceleration's variance that a motor's response explains.
 const EXPLAINED: f64 = 0.5;
 
@@ -73,7 +76,11 @@ fn gained(response: Option<Response>, expected: f64) -> Result<String, String> {
     };
     let ratio = gain / expected;
     let found = format!("{gain:.0} rad/s² per A, {ratio:.2} of the device file");
-    if gain < 0.0 {
+    if ratio.abs() < HARDLY {
+        Err(format!(
+            "{found}: the motor hardly turns with its current; check its leads and its amplifier"
+        ))
+    } else if gain < 0.0 {
         Err(format!(
             "{found}: {DIRECTION}; exchange lines A and B of the encoder, or the motor's leads, so that \
              both shafts count up in one direction"
@@ -130,7 +137,14 @@ mod tests {
         for differs in [600.0, 1600.0] {
             assert!(gain(differs, 0.9).unwrap().contains("identify"));
         }
-        for (wrong, told) in [(-1000.0, "exchange"), (200.0, "check"), (4000.0, "check")] {
+        for (wrong, told) in [
+            (-1000.0, "exchange"),
+            (-150.0, "exchange"),
+            (-20.0, "hardly turns"),
+            (50.0, "hardly turns"),
+            (200.0, "check counts"),
+            (4000.0, "check counts"),
+        ] {
             assert!(gain(wrong, 0.9).unwrap_err().contains(told), "{wrong}");
         }
         assert!(gain(1000.0, 0.2).unwrap_err().contains("does not explain"));

@@ -256,6 +256,22 @@ fn bring_up_fails_with_an_encoder_whose_lines_are_exchanged_or_stuck() {
     }
 }
 
+/// The coupler still moves the handle, with a response of the wrong sign.
+#[test]
+fn bring_up_takes_an_open_lead_for_no_sign_error() {
+    let (address, board) = EmulatedBoard::start(blank(Some(Fault::SmallOpenLead)));
+    let (text, status) = said(address, &["bring-up"]);
+    assert_eq!(status, Some(1), "{text}");
+    let line = text.lines().find(|line| line.starts_with("FAIL"));
+    let line = line.expect("a failed check");
+    assert!(
+        line.contains("small motor") && line.contains("check its leads"),
+        "{text}"
+    );
+    assert!(!text.contains("exchange"), "{text}");
+    board.end();
+}
+
 #[test]
 fn stored_settings_are_there_when_the_board_is_started_again() {
     let (address, board) = EmulatedBoard::start(blank(None));
