@@ -42,6 +42,9 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
     verify(board, false)?;
     let mut lines = vec![identity(&answer)];
     show(board, &lines[0])?;
+    if let Err(none) = currents::allowed(&settings::present(board)?) {
+        shown(board, vec![("settings", Err(none))], &mut lines)?;
+    }
     let mut pulses = Vec::new();
     if turns && failed(&lines) == 0 {
         match turns::by_hand(board, &answer) {

@@ -1,6 +1,7 @@
 //! Measured currents against their commands.
 
-use drivers::Setting;
+use drivers::{Setting, Settings};
+use tuned::DEVICE;
 
 use crate::channels::{CHANNELS, Channel, pairs};
 use crate::check::Line;
@@ -10,6 +11,8 @@ use crate::strokes::Seen;
 const LEAST_PAIRS: usize = 50;
 /// Part of the largest current of the strokes that has to be commanded.
 const REACHED: f64 = 0.9;
+/// Part of the largest current of the strokes below which no motor turns: friction takes more.
+const NO_CURRENT: f64 = 0.1;
 /// Slope below which the measured current is not that of the command.
 const LEAST_SLOPE: f64 = 0.5;
 /// Largest RMS residual, over full scale: the mean of ten readings with noise of 0.5 % has 0.16 %. The
@@ -17,6 +20,35 @@ const LEAST_SLOPE: f64 = 0.5;
 const LARGEST_RESIDUAL: f64 = 2e-3;
 /// Largest offset in bring-up, over the current limit of the motor.
 const LARGEST_OFFSET: f64 = 0.05;
+
+/// Whether the settings of a board allow currents that turn the motors.
+///
+/// # Errors
+/// Which settings allow none, and what would be right.
+pub(crate) fn allowed(settings: &Settings) -> Result<(), String> {
+    let scale = settings.current_scale();
+    let [large, small] = [DEVICE.large, DEVICE.small].map(|motor| motor.current_limit as f32);
+    for (channel, allowed, limit) in [
+        (&CHANNELS[0], scale.large(large), Setting::LimitLarge),
+        (&CHANNELS[1], scale.small(small), Setting::LimitSmall),
+    ] {
+        let (allowed, stroke) = (f64::from(allowed), f64::from(channel.stroke.get()));
+        if allowed < NO_CURRENT * stroke {
+            let [scale, limit] = [Setting::CurrentScale, limit].map(Setting::facts);
+            return Err(format!(
+                "they allow {:.0} mA of the {}, whose strokes have {:.0} mA: set {} to {} at least, and {} to \
+                 {stroke:.2} A at least, by cargo drive settings",
+                1e3 * allowed,
+                channel.motor,
+                1e3 * stroke,
+                scale.name,
+                scale.default,
+                limit.name
+            ));
+        }
+    }
+    Ok(())
+}
 
 /// The lines of the bring-up on both currents, from the strokes.
 pub(crate) fn lines(seen: &Seen) -> Vec<Line> {

@@ -226,6 +226,29 @@ fn failed_bring_up_takes_back_that_the_signs_are_verified() {
 }
 
 #[test]
+fn bring_up_names_settings_that_allow_no_current_and_arms_nothing() {
+    for (setting, told) in [
+        (Setting::CurrentScale, "0 mA of the large motor"),
+        (Setting::LimitSmall, "0 mA of the small motor"),
+    ] {
+        let mut settings = Settings::COMMISSIONED;
+        assert!(settings.set(setting, 0.0));
+        let board = Board::new(Script {
+            settings,
+            ..Script::default()
+        });
+        let (output, commands) = board.run(&["bring-up"]);
+        let [shown, _] = text(&output);
+        assert_eq!(output.status.code(), Some(1), "{shown}");
+        let line = shown.lines().last().unwrap_or_default();
+        assert!(line.starts_with("FAIL  settings"), "{shown}");
+        let name = setting.facts().name;
+        assert!(line.contains(told) && line.contains(name), "{shown}");
+        assert!(!commands.contains(&ARM), "{commands:?}");
+    }
+}
+
+#[test]
 fn image_without_monitors_is_left_alone() {
     let (output, commands) = Board::new(Script::default()).run(&["calibrate"]);
     assert_eq!(output.status.code(), Some(1));
