@@ -1,5 +1,6 @@
 //! The guided bring-up: what has to be right before a scene runs in closed loop.
 
+mod likely;
 mod motors;
 
 use drivers::link::Frame;
@@ -14,7 +15,7 @@ use crate::currents;
 use crate::interrupt;
 use crate::session::Plan;
 use crate::settings;
-use crate::strokes::{Seen, announce, observe, plan, strokes};
+use crate::strokes::{Seen, announce, plan, strokes, watch};
 use crate::supply;
 use crate::turns;
 use crate::watch::cause;
@@ -73,14 +74,15 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
         if failed(&lines) > 0 {
             break;
         }
-        let found = match observe(board, &answer, plan) {
-            Ok(seen) => {
+        let mut seen = Seen::default();
+        let found = match watch(board, &answer, plan, &mut seen) {
+            Ok(()) => {
                 let found = check(name, &seen);
                 pulses.extend(seen.indices);
                 found
             }
             Err(Failure::Check(_)) if interrupt::came() => return Err(interrupted()),
-            Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
+            Err(Failure::Check(stopped)) => vec![(name, Err(likely::told(stopped, &seen)))],
             Err(failure) => return Err(failure),
         };
         shown(board, found, &mut lines)?;

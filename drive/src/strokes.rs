@@ -59,14 +59,27 @@ pub(crate) fn plan(scene: Option<SceneKind>, keeps_alive: bool, seconds: f64) ->
 /// As [`session::observed`].
 pub(crate) fn observe(board: &mut Board, answer: &Answer, plan: Plan) -> Result<Seen, Failure> {
     let mut seen = Seen::default();
+    watch(board, answer, plan, &mut seen)?;
+    Ok(seen)
+}
+
+/// Adds what a board sends while a plan is followed, also until it fails.
+///
+/// # Errors
+/// As [`session::observed`].
+pub(crate) fn watch(
+    board: &mut Board,
+    answer: &Answer,
+    plan: Plan,
+    seen: &mut Seen,
+) -> Result<(), Failure> {
     session::observed(board, answer, plan, &mut |message| match message {
         Message::Frame(frame) => seen.frames.push(frame),
         Message::Measured(measured) => seen.measured.push(measured),
         Message::Index(index) => seen.indices.push(index),
         Message::Supply(supply) => seen.supply.push(supply.volts),
         _ => {}
-    })?;
-    Ok(seen)
+    })
 }
 
 #[cfg(test)]

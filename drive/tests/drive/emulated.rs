@@ -242,11 +242,18 @@ fn bring_up_finds_counts_of_a_turn_that_are_not_those_of_the_device_file() {
 
 #[test]
 fn bring_up_fails_with_an_encoder_whose_lines_are_exchanged_or_stuck() {
-    for fault in [Fault::Swapped, Fault::StuckA] {
+    const STUCK: &str = "a line of the large encoder is stuck";
+    for (fault, reason) in [
+        (Fault::Swapped, "exchange lines A and B"),
+        (Fault::StuckA, STUCK),
+        (Fault::StuckBoth, STUCK),
+        (Fault::SmallSwapped, "the handle's encoder counts backwards"),
+    ] {
         let (address, board) = EmulatedBoard::start(blank(Some(fault)));
         let (text, status) = said(address, &["bring-up"]);
         assert_eq!(status, Some(1), "{text}");
-        assert!(text.contains("FAIL"), "{text}");
+        let line = text.lines().find(|line| line.starts_with("FAIL"));
+        assert!(line.is_some_and(|line| line.contains(reason)), "{text}");
         assert_eq!(state_now(address), Some(Mode::Boot));
         assert_eq!(
             said(address, &["select", "free-air", "--seconds", "0.1"]).1,
