@@ -7,6 +7,11 @@ macro_rules! stops {
         $($(#[doc = $doc:literal])+ $stop:ident = $code:literal, $name:literal;)+
     ) => {
         /// Cause of a stop. The numbers and names are those of telemetry.
+        ///
+        /// [`Mode::Safe`](crate::Mode::Safe) is the state of a device that has stopped, but for a command timeout.
+        /// Overload is judged by [`Windings`](crate::Windings), a current mismatch by
+        /// [`Ammeters`](crate::Ammeters), lost counts by [`Index`](crate::Index), the torque balance by
+        /// [`Balance`](crate::Balance), and the supply by [`Supply`](crate::Supply).
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[repr(u8)]
@@ -38,7 +43,7 @@ macro_rules! stops {
                 }
             }
 
-            /// What happened, in words, for programs on a host.
+            /// What happened, in words without markup, for programs on a host.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
                 match self {
@@ -77,9 +82,7 @@ stops! {
     Panic = 11, "panic";
     /// The core took a hard fault.
     HardFault = 12, "hard-fault";
-    /// No command came for too long. The scene is off; the device is not in [`Mode::Safe`].
-    ///
-    /// [`Mode::Safe`]: crate::Mode::Safe
+    /// No command came for too long. The scene is off; the device is not in the state safe.
     CommandTimeout = 13, "command-timeout";
     /// The large motor accelerated against its current: the phases of an encoder or of a motor are
     /// exchanged.
@@ -92,20 +95,30 @@ stops! {
     /// The interlock loop opened, and hardware disabled the amplifiers: the emergency stop is
     /// pressed, or an amplifier reports a fault in the loop.
     Interlock = 17, "interlock";
-    /// A winding carried more than its continuous current for too long, see
-    /// [`Windings`](crate::Windings).
+    /// A winding carried more than its continuous current for too long.
     Overload = 18, "overload";
-    /// A measured current was not the commanded one for too long, see
-    /// [`Ammeters`](crate::Ammeters).
+    /// A measured current was not the commanded one for too long.
     CurrentMismatch = 19, "current-mismatch";
-    /// Counts of an encoder were lost or gained: an index pulse was not whole turns after the first one,
-    /// see [`Index`](crate::Index). The device file may also have a wrong number of counts per turn.
+    /// Counts of an encoder were lost or gained: an index pulse was not whole turns after the first one.
+    /// The device file may also have a wrong number of counts per turn.
     LostCounts = 20, "lost-counts";
-    /// The large motor's current does not agree with the motion of both shafts, see
-    /// [`Balance`](crate::Balance): the handle's encoder counts backwards or not at all, or the large motor
-    /// or its encoder fails.
+    /// The large motor's current does not agree with the motion of both shafts: the handle's encoder counts
+    /// backwards or not at all, or the large motor or its encoder fails.
     TorqueBalance = 21, "torque-balance";
-    /// The voltage of the amplifiers' supply is outside of its range, see [`Supply`](crate::Supply). The
-    /// device cannot be armed.
+    /// The voltage of the amplifiers' supply is outside of its range. The device cannot be armed.
     Supply = 22, "supply";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meanings_are_sentences_without_markup() {
+        for stop in Stop::ALL {
+            let meaning = stop.meaning().trim();
+            assert!(!meaning.contains(['[', ']', '`']), "{meaning}");
+            assert!(meaning.ends_with('.'), "{meaning}");
+        }
+    }
 }
