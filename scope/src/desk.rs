@@ -9,7 +9,7 @@ use drive::refusal::refusal;
 use drivers::Command;
 use drivers::link::{Frame, Hello, Message, Rejected};
 use experiments::transparency::Fingertip;
-use haptic_control::{Mode, Request, SceneKind, Stop};
+use haptic_control::{Mode, Request, Stop};
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
@@ -21,6 +21,7 @@ use crate::fault_watch::{FaultWatch, sentence};
 use crate::hub::{Event, Hub};
 use crate::order::Order;
 use crate::recorder::Recorder;
+use crate::selection::Selection;
 use crate::tactile::Tactile;
 
 /// Telemetry frames of a second.
@@ -60,7 +61,7 @@ pub(crate) struct Desk {
     rejected: Option<Rejected>,
     /// Why the board refused the latest command that it refused, and how many it refused.
     refusal: Option<(&'static str, u32)>,
-    scene: u8,
+    selection: Selection,
     tactile: Tactile,
     told: Instant,
     pub(crate) fault: Option<FaultWatch>,
@@ -87,7 +88,7 @@ impl Desk {
             t: 0.0,
             rejected: None,
             refusal: None,
-            scene: SceneKind::Off.number(),
+            selection: Selection::NONE,
             tactile: Tactile::new(),
             told: Instant::now(),
             fault: None,
@@ -114,7 +115,7 @@ impl Desk {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
         (self.last, self.rejected, self.hello) = (None, None, None);
-        self.scene = SceneKind::Off.number();
+        self.selection = Selection::NONE;
         self.estimators.restart();
         self.bench.restarted();
         self.end_recording();
@@ -134,8 +135,8 @@ impl Desk {
                 }
             }
             Order::Record { on: false } => self.end_recording(),
-            Order::Scene { number } => self.scene = number,
-            Order::Disarm => self.scene = SceneKind::Off.number(),
+            Order::Scene { number } => self.selection.order(number, self.t),
+            Order::Disarm => self.selection = Selection::NONE,
             _ => {}
         }
         let command = order.command()?;
@@ -180,7 +181,11 @@ impl Desk {
             Message::Hello(hello) => self.hello = Some(hello),
             Message::Frame(frame) => self.frame(&frame, truth),
             Message::Rejected(now) => {
-                if let Some(reason) = self.rejected.and_then(|before| refusal(&before, &now)) {
+                let before = self.rejected.unwrap_or(now);
+                if before.unverified != now.unverified {
+                    self.selection.refused(self.t);
+                }
+                if let Some(reason) = refusal(&before, &now) {
                     let number = self.refusal.map_or(0, |(_, number)| number) + 1;
                     self.refusal = Some((reason, number));
                 }
@@ -202,6 +207,9 @@ impl Desk {
         if let Some(truth) = truth {
             self.t = truth.t;
         }
+        let mode = |frame: &Frame| Mode::from_code(frame.state);
+        let before = self.last.as_ref().and_then(mode);
+        self.selection.frame(before, mode(frame), self.t);
         self.last = Some(*frame);
         let mut values = self.values(frame);
         if let Some(truth) = truth {
@@ -284,7 +292,7 @@ impl Desk {
             "on": self.is_on(),
             "cause": cause.map(Stop::as_str),
             "words": cause.filter(|cause| *cause != Stop::None).map(|cause| sentence(cause.meaning())),
-            "scene": self.scene,
+            "scene": self.selection.scene(),
             "refusal": self.refusal.map(|(reason, number)| json!({"reason": reason, "number": number})),
             "recording": recording.map(Recorder::len),
             "recorded": self.hub.recording().is_some(),

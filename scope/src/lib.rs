@@ -12,6 +12,7 @@ mod hub;
 mod order;
 mod page;
 mod recorder;
+mod selection;
 mod server;
 mod session;
 mod source;

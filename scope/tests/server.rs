@@ -176,6 +176,9 @@ fn fault_is_told_with_its_time_and_its_cause() {
     assert!(!is_on(
         &page.status("safe", |status| status["mode"] == "safe")
     ));
+    page.status("no scene, so that one can be selected", |status| {
+        status["scene"] == 0
+    });
     // A new board is whole.
     page.order(&json!({"do": "restart"}));
     page.status("a new board", |status| status["mode"] == "boot");
