@@ -2,9 +2,12 @@
 
 const $ = (id) => document.getElementById(id);
 
+// Time after an edit in which a slider keeps its value: the answer of the board comes within it.
+const EDITED_MS = 1000;
+
 class Controls {
   constructor(facts, link, view, plots) {
-    Object.assign(this, { facts, link, view, plots, pending: new Map(), values: new Map(), scene: null });
+    Object.assign(this, { facts, link, view, plots, pending: new Map(), edited: new Map(), tuned: {}, sliders: [], scene: null });
     const { source } = facts;
     $("source").textContent = `${source.title}: ${source.text}`;
     $("source").title = source.from;
@@ -30,7 +33,7 @@ class Controls {
     });
     this.on("arm", "click", () => this.link.send({ do: "arm" }));
     this.on("disarm", "click", () => this.link.send({ do: "disarm" }));
-    this.on("restart", "click", () => { this.values.clear(); this.scene = null; this.link.send({ do: "restart" }); });
+    this.on("restart", "click", () => this.link.send({ do: "restart" }));
     this.on("take", "click", () => this.link.join());
     this.on("record", "click", () => this.link.send({ do: "record", on: $("record").textContent === "Record" }));
     for (const kind of ["csv", "mcap"]) $(kind).href = `/recording.${kind}?token=${TOKEN}`;
@@ -42,21 +45,30 @@ class Controls {
     const scene = this.facts.scenes[number];
     $("scene").value = number;
     $("summary").textContent = scene.summary;
+    this.sliders = [];
     $("parameters").replaceChildren(...scene.parameters.map((p, k) => {
-      const key = `${number}.${k}`, value = this.values.get(key) ?? p.usual ?? p.least;
+      const key = `${number}.${k}`;
       const label = document.createElement("label"), name = document.createElement("span");
       const out = document.createElement("output"), input = document.createElement("input");
       label.className = "parameter";
       name.textContent = p.name;
-      input.type = "range"; input.min = p.least; input.max = p.most; input.step = "any"; input.value = value;
+      input.type = "range"; input.min = p.least; input.max = p.most; input.step = "any";
       input.id = `parameter-${p.name}`;
       const show = (v) => { out.textContent = `${Number(v).toPrecision(3)} ${p.unit}`; };
-      show(value);
+      // What the board has, but for a value that is on its way there.
+      const follow = () => {
+        if (performance.now() - (this.edited.get(key) ?? -Infinity) < EDITED_MS) return;
+        const value = this.value(number, k);
+        if (input.value !== String(value)) input.value = value;
+        show(value);
+      };
+      follow();
+      this.sliders.push(follow);
       input.oninput = () => {
         // An f32 within the bounds, as the firmware compares.
         const set = Math.min(p.most, Math.max(p.least, Math.fround(Number(input.value))));
         const sent = p.unit === "" ? Math.round(set) : set;
-        this.values.set(key, sent); show(sent); this.wall();
+        this.edited.set(key, performance.now()); show(sent);
         this.pending.set(key, { do: "tune", scene: number, parameter: k, value: sent });
       };
       // A key moves by a hundredth, which `step=any` does not.
@@ -71,11 +83,17 @@ class Controls {
     this.wall();
   }
 
+  // The value of a parameter on the board: as set, or as after a start.
+  value(scene, k) {
+    const { usual, least } = this.facts.scenes[scene].parameters[k];
+    return this.tuned[`${scene}.${k}`] ?? usual ?? least;
+  }
+
   // Where the drawing has a wall.
   wall() {
     const scene = this.facts.scenes[this.scene];
     const k = scene.parameters.findIndex((p) => p.name === "position");
-    this.view.wall = scene.name === "wall" && k >= 0 ? this.values.get(`${this.scene}.${k}`) ?? scene.parameters[k].usual : null;
+    this.view.wall = scene.name === "wall" && k >= 0 ? this.value(this.scene, k) : null;
   }
 
   makeEstimators() {
@@ -175,7 +193,10 @@ class Controls {
     this.silence(s.silent);
     $("mode").className = `pill ${s.silent || s.mode === "safe" ? "safe" : s.on ? "on" : ""}`;
     $("mode").textContent = s.silent ? "no answer" : s.mode === null ? "starting" : `${s.mode}${s.words ? ": " + s.words : ""}`;
+    this.tuned = s.tuned;
     if (s.scene !== this.scene && s.scene !== undefined) this.showScene(s.scene);
+    for (const follow of this.sliders) follow();
+    this.wall();
     const refused = s.refusal ? `The board refused a command: ${s.refusal.reason}.` : "";
     if (refused) $("summary").textContent = refused;
     $("record").textContent = s.recording === null ? "Record" : "Stop";

@@ -20,6 +20,7 @@ use crate::estimators::{Estimators, Reading};
 use crate::fault_watch::{FaultWatch, sentence};
 use crate::hub::{Event, Hub};
 use crate::order::Order;
+use crate::parameters::Tuned;
 use crate::recorder::Recorder;
 use crate::selection::Selection;
 use crate::tactile::Tactile;
@@ -62,6 +63,7 @@ pub(crate) struct Desk {
     /// Why the board refused the latest command that it refused, and how many it refused.
     refusal: Option<(&'static str, u32)>,
     selection: Selection,
+    tuned: Tuned,
     tactile: Tactile,
     told: Instant,
     pub(crate) fault: Option<FaultWatch>,
@@ -89,6 +91,7 @@ impl Desk {
             rejected: None,
             refusal: None,
             selection: Selection::NONE,
+            tuned: Tuned::new(),
             tactile: Tactile::new(),
             told: Instant::now(),
             fault: None,
@@ -115,10 +118,15 @@ impl Desk {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
         (self.last, self.rejected, self.hello) = (None, None, None);
-        self.selection = Selection::NONE;
+        self.forget();
         self.estimators.restart();
         self.bench.restarted();
         self.end_recording();
+    }
+
+    /// The board has neither scene nor parameters of before.
+    fn forget(&mut self) {
+        (self.selection, self.tuned) = (Selection::NONE, Tuned::new());
     }
 
     /// Follows an order as far as the desk does, and returns the command for the board.
@@ -135,7 +143,19 @@ impl Desk {
                 }
             }
             Order::Record { on: false } => self.end_recording(),
-            Order::Scene { number } => self.selection.order(number, self.t),
+            Order::Scene { number } => {
+                self.selection.order(number, self.t);
+                self.tuned.select(number);
+            }
+            Order::Tune {
+                scene,
+                parameter,
+                value,
+            } => {
+                if let Some(hello) = &self.hello {
+                    self.tuned.set(scene, parameter, value, hello);
+                }
+            }
             Order::Disarm => self.selection = Selection::NONE,
             _ => {}
         }
@@ -206,6 +226,9 @@ impl Desk {
         }
         if let Some(truth) = truth {
             self.t = truth.t;
+        }
+        if self.last.is_some_and(|last| is_anew(&last, frame)) {
+            self.forget();
         }
         let mode = |frame: &Frame| Mode::from_code(frame.state);
         let before = self.last.as_ref().and_then(mode);
@@ -293,6 +316,7 @@ impl Desk {
             "cause": cause.map(Stop::as_str),
             "words": cause.filter(|cause| *cause != Stop::None).map(|cause| sentence(cause.meaning())),
             "scene": self.selection.scene(),
+            "tuned": self.tuned.json(),
             "refusal": self.refusal.map(|(reason, number)| json!({"reason": reason, "number": number})),
             "recording": recording.map(Recorder::len),
             "recorded": self.hub.recording().is_some(),
@@ -310,4 +334,10 @@ impl Desk {
 /// Ticks of a second.
 fn hz(rate: f64) -> u32 {
     rate as u32
+}
+
+/// Whether the board has started again between two frames: both of its numbers go back.
+fn is_anew(last: &Frame, frame: &Frame) -> bool {
+    let goes_back = |from: u32, to: u32| to.wrapping_sub(from).cast_signed() < 0;
+    goes_back(last.seq, frame.seq) && goes_back(last.tick, frame.tick)
 }

@@ -11,6 +11,7 @@ mod guide;
 mod hub;
 mod order;
 mod page;
+mod parameters;
 mod recorder;
 mod selection;
 mod server;

@@ -324,6 +324,44 @@ fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
 }
 
 #[test]
+fn sliders_have_the_values_of_the_board() {
+    let server = Server::emulated();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &tab);
+    run_scene(&mut browser, &tab, "wall");
+    let enter = |browser: &mut Browser, value: &str| {
+        browser.value(&tab, &format!(
+            "(() => {{ const i = $('parameter-stiffness'); i.value = '{value}'; i.oninput(); }})()"
+        ))
+    };
+    let shown = |value: &str| {
+        format!(
+            "Math.abs($('parameter-stiffness').value - {value}) < 1e-6 && $('parameter-stiffness').previousSibling.textContent === '{value} N·m/rad'"
+        )
+    };
+    browser.wait(&tab, &shown("0.300"));
+    enter(&mut browser, "0.125");
+    browser.wait(&tab, "scope.status.tuned['2.1'] === 0.125");
+    browser.value(&tab, "location.reload()");
+    browser.wait(
+        &tab,
+        "scope.role?.commands === true && scope.status?.mode === 'boot'",
+    );
+    select(&mut browser, &tab, "wall");
+    browser.wait(&tab, "scope.status.scene === 2");
+    browser.wait(&tab, &shown("0.125"));
+    // A value that does not come to the board leaves the slider again.
+    browser.value(&tab, "scope.link.send = () => {}, 0");
+    enter(&mut browser, "0.25");
+    browser.wait(&tab, &shown("0.250"));
+    browser.wait(&tab, &shown("0.125"));
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+#[test]
 fn dark_page_has_dark_plots() {
     let server = Server::emulated();
     let Some(mut browser) = Browser::start() else {

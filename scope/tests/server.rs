@@ -187,6 +187,27 @@ fn fault_is_told_with_its_time_and_its_cause() {
 }
 
 #[test]
+fn parameters_are_told_until_the_board_starts_anew() {
+    let server = Server::emulated();
+    let mut page = running(&server);
+    let tune = |parameter, value: f64| json!({"do": "tune", "scene": 2, "parameter": parameter, "value": value});
+    page.order(&tune(1, 0.25));
+    let is_kept = |status: &Value| status["tuned"] == json!({"2.1": 0.25});
+    page.status("a value", is_kept);
+    // Another page has it too, and a value out of bounds changes nothing.
+    page.order(&tune(1, 100.0));
+    server.client().status("the value", is_kept);
+    page.order(&json!({"do": "disarm"}));
+    page.status("disarmed", |status| {
+        status["mode"] == "boot" && is_kept(status)
+    });
+    page.order(&json!({"do": "restart"}));
+    page.status("the values after a start", |status| {
+        status["tuned"] == json!({})
+    });
+}
+
+#[test]
 fn recording_that_a_page_has_taken_is_not_written_again() {
     let mut server = Server::emulated();
     let mut page = running(&server);
