@@ -118,6 +118,7 @@ impl Desk {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
         (self.last, self.rejected, self.hello) = (None, None, None);
+        self.hub.identify(None);
         self.forget();
         self.estimators.restart();
         self.bench.restarted();
@@ -198,7 +199,10 @@ impl Desk {
         }
         self.bench.message(&message);
         match message {
-            Message::Hello(hello) => self.hello = Some(hello),
+            Message::Hello(hello) => {
+                self.hello = Some(hello);
+                self.hub.identify(self.hello);
+            }
             Message::Frame(frame) => self.frame(&frame, truth),
             Message::Rejected(now) => {
                 let before = self.rejected.unwrap_or(now);

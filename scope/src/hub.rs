@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
+use drivers::link::Hello;
 use serde_json::{Value, json};
 use tokio::sync::broadcast;
 
@@ -78,6 +79,8 @@ pub(crate) struct Hub {
     left: AtomicBool,
     commander: Mutex<Option<Commander>>,
     recording: Mutex<Option<Arc<Finished>>>,
+    /// Identity of the image, once it has come.
+    hello: Mutex<Option<Hello>>,
     /// Pages that have come.
     pages: AtomicU64,
     /// Pages that are there.
@@ -104,6 +107,7 @@ impl Hub {
             left: AtomicBool::new(false),
             commander: Mutex::new(None),
             recording: Mutex::new(None),
+            hello: Mutex::new(None),
             pages: AtomicU64::new(0),
             present: AtomicU64::new(0),
         };
@@ -209,6 +213,16 @@ impl Hub {
     /// The latest finished recording.
     pub(crate) fn recording(&self) -> Option<Arc<Finished>> {
         locked(&self.recording).clone()
+    }
+
+    /// The board has told its identity, or has started again.
+    pub(crate) fn identify(&self, hello: Option<Hello>) {
+        *locked(&self.hello) = hello;
+    }
+
+    /// Identity of the image, once it has come.
+    pub(crate) fn hello(&self) -> Option<Hello> {
+        *locked(&self.hello)
     }
 
     /// Whether a page is there.

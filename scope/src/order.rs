@@ -1,6 +1,8 @@
 //! What a page asks for, in the form of its messages.
 
+use drive::named::{chosen, numbered};
 use drive::settings::admitted;
+use drivers::link::Hello;
 use drivers::{Command, Setting};
 use firmware_app::large;
 use firmware_app::scene::BOUNDS;
@@ -122,6 +124,23 @@ impl Order {
         }
     }
 
+    /// Checks what the image of the board decides, by its identity, if that has come.
+    ///
+    /// # Errors
+    /// One line with what the image has.
+    pub(crate) fn fits(&self, hello: Option<&Hello>) -> Result<(), String> {
+        let hello = || hello.ok_or("the board has not told its identity yet");
+        match *self {
+            Self::Estimator { number } => chosen(number, hello()?),
+            // The board stores every number.
+            Self::Set { setting, value } if setting == Setting::Estimator.number() => {
+                numbered(value as u8, hello()?)
+                    .map_err(|error| format!("estimator={value}: {error}"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The command of the link that the order is, if it is one.
     pub(crate) fn command(&self) -> Option<Command> {
         Some(match *self {
@@ -156,8 +175,26 @@ fn scene(number: u8) -> Result<SceneKind, String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
+    use drivers::link::{Features, Label, PROTOCOL};
+    use firmware_app::config::DEVICE;
+
     use super::*;
+
+    /// The identity of an image of all scenes and both estimators, for the device of this build.
+    pub(crate) fn hello() -> Hello {
+        Hello {
+            protocol: PROTOCOL,
+            version: Label::new("0.1.0"),
+            commit: Label::new("a1b2c3d"),
+            features: Features::from_flags(&[]),
+            rate: 10_000,
+            device: DEVICE.fingerprint().0,
+            presets: 0,
+            cause: 0,
+            brown_out_reset: true,
+        }
+    }
 
     #[test]
     fn text_that_is_no_order_is_refused() {
@@ -176,6 +213,25 @@ mod tests {
         assert_eq!(Order::parse(r#"{"hand":{"at":null}}"#), hand(None));
         assert_eq!(Order::parse(r#"{"hand":{"at":-0.25}}"#), hand(Some(-0.25)));
         assert_eq!(Order::parse("\"arm\""), Ok(Order::Arm));
+    }
+
+    #[test]
+    fn estimator_that_the_image_does_not_have_is_refused() {
+        let set = |value| Order::Set {
+            setting: Setting::Estimator.number(),
+            value,
+        };
+        let hello = hello();
+        assert_eq!(set(1.0).fits(Some(&hello)), Ok(()));
+        let refused = set(77.0).fits(Some(&hello)).unwrap_err();
+        assert!(
+            refused.starts_with("estimator=77: the image has no estimator 77; there are 0 ("),
+            "{refused}"
+        );
+        assert!(set(1.0).fits(None).unwrap_err().contains("identity"));
+        assert_eq!(Order::Estimator { number: 1 }.fits(Some(&hello)), Ok(()));
+        assert!(Order::Estimator { number: 2 }.fits(Some(&hello)).is_err());
+        assert_eq!(Order::Arm.fits(None), Ok(()));
     }
 
     #[test]

@@ -54,25 +54,14 @@ impl Tuned {
 
 #[cfg(test)]
 mod tests {
-    use drivers::link::{Features, Label, PROTOCOL};
-    use firmware_app::config::DEVICE;
     use serde_json::json;
 
     use super::*;
+    use crate::order::tests::hello;
 
     #[test]
     fn values_that_the_image_takes_are_kept() {
-        let hello = Hello {
-            protocol: PROTOCOL,
-            version: Label::new("0.1.0"),
-            commit: Label::new("a1b2c3d"),
-            features: Features::from_flags(&[]),
-            rate: 10_000,
-            device: DEVICE.fingerprint().0,
-            presets: 0,
-            cause: 0,
-            brown_out_reset: true,
-        };
+        let hello = hello();
         let [wall, detents, torque] =
             [SceneKind::Wall, SceneKind::Detents, SceneKind::Torque].map(SceneKind::number);
         let mut tuned = Tuned::new();

@@ -138,7 +138,8 @@ impl Page {
                 _ => self.refuse("another page commands").await,
             };
         }
-        match order.check() {
+        let hello = self.hub.hello();
+        match order.check().and_then(|()| order.fits(hello.as_ref())) {
             Ok(()) => {
                 self.hub.order(order);
                 ControlFlow::Continue(())

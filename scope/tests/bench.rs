@@ -96,6 +96,11 @@ fn settings_are_shown_set_and_stored_and_a_frozen_page_ends_a_procedure() {
         (message["type"] == "refused").then(|| message["why"].to_string())
     });
     assert!(why.contains("current-scale must be from 0 to 1"), "{why}");
+    page.order(&json!({"do": "set", "setting": Setting::Estimator.number(), "value": 77}));
+    let why = page.wait("a refusal", |_, message| {
+        (message["type"] == "refused").then(|| message["why"].to_string())
+    });
+    assert!(why.contains("the image has no estimator 77"), "{why}");
     page.order(&json!({"do": "store"}));
     let status = page.status("an outcome", |status| !status["stored"].is_null());
     assert_eq!(status["stored"]["words"], "settings stored");
