@@ -64,6 +64,8 @@ fn port_without_an_answer_is_told_before_a_page_is_served() {
 #[derive(Default)]
 struct Shared {
     is_frozen: AtomicBool,
+    /// Whether the order to disarm ends the scene.
+    obeys: bool,
     commands: Mutex<Vec<Command>>,
 }
 
@@ -88,6 +90,10 @@ fn play(mut stream: TcpStream, shared: &Shared) {
             Ok(0) => return,
             Ok(count) => {
                 let commands = bytes[..count].iter().filter_map(|byte| parser.take(*byte));
+                let commands: Vec<_> = commands.collect();
+                if shared.obeys && commands.contains(&Command::Request(Request::Disarm)) {
+                    frame.state = Mode::Boot as u8;
+                }
                 shared.commands.lock().expect("a list").extend(commands);
             }
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
@@ -106,6 +112,24 @@ fn play(mut stream: TcpStream, shared: &Shared) {
             }
         }
     }
+}
+
+#[test]
+fn board_that_runs_a_scene_already_is_disarmed() {
+    let shared = Arc::new(Shared {
+        obeys: true,
+        ..Shared::default()
+    });
+    let of_board = Arc::clone(&shared);
+    let port = port(move |stream| play(stream, &of_board));
+    let server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let mut page = server.joined();
+    page.lives = true;
+    page.status("disarmed", |status| status["mode"] == "boot");
+    let commands = shared.commands.lock().expect("a list");
+    let disarm = Command::Request(Request::Disarm);
+    let others = commands.iter().find(|it| **it != Command::Identify);
+    assert_eq!(others, Some(&disarm), "{commands:?}");
 }
 
 #[test]

@@ -21,7 +21,7 @@ use crate::facts;
 use crate::hub::Hub;
 use crate::order::Order;
 
-/// Interval of the question for the identity, until it is answered.
+/// Interval of the question for the identity until it is answered, and of the order to disarm until it is followed.
 const AGAIN: Duration = Duration::from_millis(200);
 
 /// A board at a port.
@@ -54,6 +54,17 @@ impl RealBoard {
             patience,
         })
     }
+}
+
+/// The amplifiers of a board at the begin.
+#[derive(Clone, Copy)]
+enum Found {
+    /// No frame has come.
+    Unknown,
+    /// They were enabled, and a disarm was sent then.
+    Enabled(Instant),
+    /// They are disabled, or have been.
+    Disarmed,
 }
 
 /// Asks a board for its identity until it answers.
@@ -117,6 +128,8 @@ impl Source for RealBoard {
 impl RealBoard {
     fn follow(&mut self, desk: &mut Desk, orders: &Receiver<Order>) -> Result<(), Failure> {
         let (mut heard, mut was_silent) = (Instant::now(), None);
+        // The first frames tell whether another program has left the board enabled.
+        let mut found = Found::Unknown;
         while !desk.hub.stops() {
             let read = read(&mut self.port, &mut self.parser);
             let (bytes, messages) = read.map_err(|error| self.lost(&error))?;
@@ -127,6 +140,9 @@ impl RealBoard {
                     compatible(self.port.name(), &hello)?;
                 }
                 desk.message(message, None);
+                if let Message::Frame(_) = message {
+                    found = self.found(found, desk)?;
+                }
             }
             let is_silent = heard.elapsed() >= self.patience;
             if is_silent != was_silent.is_some() {
@@ -149,6 +165,28 @@ impl RealBoard {
             desk.tell(|| json!({ "silent": was_silent }));
         }
         Ok(())
+    }
+
+    /// Disarms a board that was enabled before this server, until a frame shows it: the page would keep a scene
+    /// alive that it does not know.
+    fn found(&mut self, before: Found, desk: &mut Desk) -> Result<Found, Failure> {
+        let again = match before {
+            Found::Disarmed => return Ok(before),
+            _ if !desk.is_on() => return Ok(Found::Disarmed),
+            Found::Unknown => {
+                note(format_args!(
+                    "{}: the board was enabled already, by another program or by itself; it is disarmed",
+                    self.port.name()
+                ));
+                true
+            }
+            Found::Enabled(asked) => asked.elapsed() >= AGAIN,
+        };
+        if again {
+            self.disarm(desk)?;
+            return Ok(Found::Enabled(Instant::now()));
+        }
+        Ok(before)
     }
 
     /// The board has become silent, or sends again: tells it, and disarms a silent board. Returns the message
