@@ -154,7 +154,8 @@ class Controls {
 
   // A page that watches has no controls, nor has one whose board is silent.
   lock() {
-    const locked = this.watches || this.silent;
+    // A new board is the remedy of a silent emulated one.
+    const locked = this.watches || (this.silent && this.facts.source.kind !== "emulated");
     $("commands").disabled = $("transport").disabled = $("bench").disabled = locked;
     for (const id of ["record", ...[...document.querySelectorAll("#faults button")]]) (typeof id === "string" ? $(id) : id).disabled = locked;
   }

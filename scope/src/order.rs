@@ -141,6 +141,11 @@ impl Order {
         }
     }
 
+    /// Whether a silent board does not get the order: every command but the one that disarms.
+    pub(crate) fn needs_an_answer(&self) -> bool {
+        *self != Self::Disarm && self.command().is_some()
+    }
+
     /// The command of the link that the order is, if it is one.
     pub(crate) fn command(&self) -> Option<Command> {
         Some(match *self {

@@ -187,6 +187,25 @@ fn fault_is_told_with_its_time_and_its_cause() {
 }
 
 #[test]
+fn board_whose_core_is_halted_is_silent_until_a_new_one_starts() {
+    let server = Server::emulated();
+    let mut page = running(&server);
+    page.order(&json!({"do": "fault", "name": "frozen-halt-timer-on"}));
+    let status = page.status("a silence", |status| !status["silent"].is_null());
+    assert!(
+        status["silent"].to_string().contains("sends nothing"),
+        "{status}"
+    );
+    page.order(&json!({"do": "scene", "number": 1}));
+    let status = page.status("no command", |_| true);
+    assert_eq!(status["scene"], 0);
+    page.order(&json!({"do": "restart"}));
+    page.status("a new board", |status| {
+        status["mode"] == "boot" && status["silent"].is_null()
+    });
+}
+
+#[test]
 fn parameters_are_told_until_the_board_starts_anew() {
     let server = Server::emulated();
     let mut page = running(&server);

@@ -150,8 +150,10 @@ impl RealBoard {
             }
             while let Ok(order) = orders.try_recv() {
                 // A board that is not heard gets no command but the one that disarms: it ends a scene by itself.
-                let command = desk.order(&order);
-                if let Some(command) = command.filter(|_| !is_silent || order == Order::Disarm) {
+                if is_silent && order.needs_an_answer() {
+                    continue;
+                }
+                if let Some(command) = desk.order(&order) {
                     self.send(command)?;
                 }
             }

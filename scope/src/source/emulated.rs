@@ -26,8 +26,14 @@ use crate::order::Order;
 
 /// Longest run before the board starts again, s: a year.
 const SECONDS: f64 = 3.2e7;
+/// What a page says of a silent board.
+const SILENT: &str =
+    "The board sends nothing: its core or its line stands still; Restart gives a new board";
 /// Bytes on their way to the board while which no order is taken: the line is slower than a page.
 const WAITING: usize = 256;
+
+/// Virtual time without a message from which on the board is silent, ns: that of a board at a port.
+const SILENT_NS: u64 = 2_000_000_000;
 
 /// The flash image on the emulated board.
 pub(crate) struct Emulated {
@@ -98,6 +104,8 @@ impl Source for Emulated {
                 pacer: Pacer::new(),
                 restarts: 0,
                 is_held: false,
+                heard_ns: 0,
+                is_silent: false,
                 frame_ticks: 1,
                 last_enables: [false; 2],
             };
@@ -131,6 +139,9 @@ struct Seat {
     pacer: Pacer,
     restarts: usize,
     is_held: bool,
+    /// Virtual time of the latest message, ns.
+    heard_ns: u64,
+    is_silent: bool,
     /// Control ticks of a frame.
     frame_ticks: usize,
     last_enables: [bool; 2],
@@ -162,6 +173,9 @@ impl Client for Seat {
         for byte in seen.sent {
             self.parser.take(*byte, |message| messages.push(message));
         }
+        if !messages.is_empty() {
+            self.heard_ns = seen.at_ns;
+        }
         for message in messages {
             if let Message::Hello(hello) = message {
                 self.frame_ticks = (f64::from(hello.rate) / FRAMES_HZ) as usize;
@@ -184,6 +198,14 @@ impl Client for Seat {
         if desk.hello().is_none() && seen.at_ns.is_multiple_of(100_000_000) {
             acts.send.extend(encode(Command::Identify));
         }
+        let is_silent = seen.at_ns.saturating_sub(self.heard_ns) >= SILENT_NS;
+        let was_silent = mem::replace(&mut self.is_silent, is_silent);
+        if is_silent
+            && !was_silent
+            && let Some(command) = desk.order(&Order::Disarm)
+        {
+            acts.send.extend(encode(command));
+        }
         while seen.waiting + acts.send.len() < WAITING
             && let Ok(order) = orders.try_recv()
         {
@@ -198,6 +220,9 @@ impl Client for Seat {
                     }
                 }
                 _ => {}
+            }
+            if is_silent && order.needs_an_answer() {
+                continue;
             }
             if let Some(command) = desk.order(&order) {
                 acts.send.extend(encode(command));
@@ -217,7 +242,12 @@ impl Client for Seat {
             self.is_held = false;
             acts.hand = Some(Hold::Free);
         }
-        desk.tell(|| self.pacer.json());
+        let silent = is_silent.then_some(SILENT);
+        desk.tell(|| {
+            let mut status = self.pacer.json();
+            status["silent"] = silent.into();
+            status
+        });
         let goes_on = !desk.hub.stops() && !*restarts;
         drop(table);
         self.pacer.wait(seen.at_ns);
