@@ -16,7 +16,6 @@ use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
 use terminal::wording::WIDTH;
 
-use crate::estimators::Estimators;
 use crate::hub::{Event, Hub};
 use crate::server::Server;
 use crate::source::{Emulated, RealBoard, Recorded, Source};
@@ -137,9 +136,7 @@ fn serve(
         .unwrap_or_else(|_| Err(Failure::Check("the source panicked".to_owned())));
     hub.tell(Event::End);
     let streamed = stream.map_or(Ok(()), Stream::finish);
-    let rescued = hub
-        .recording()
-        .map_or(Ok(()), |recording| recording.rescue(&Estimators::names()));
+    let rescued = hub.rescue();
     ended.and(served).and(streamed).and(rescued)
 }
 

@@ -3,14 +3,17 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use drivers::link::Hello;
 use serde_json::{Value, json};
+use terminal::failure::Failure;
 use tokio::sync::broadcast;
 
+use crate::estimators::Estimators;
 use crate::order::Order;
 use crate::recorder::Finished;
 
@@ -79,6 +82,8 @@ pub(crate) struct Hub {
     left: AtomicBool,
     commander: Mutex<Option<Commander>>,
     recording: Mutex<Option<Arc<Finished>>>,
+    /// Threads that write recordings which no page has taken and which have made room for the next one.
+    rescues: Mutex<Vec<JoinHandle<Result<(), Failure>>>>,
     /// Identity of the image, once it has come.
     hello: Mutex<Option<Hello>>,
     /// Pages that have come.
@@ -107,6 +112,7 @@ impl Hub {
             left: AtomicBool::new(false),
             commander: Mutex::new(None),
             recording: Mutex::new(None),
+            rescues: Mutex::default(),
             hello: Mutex::new(None),
             pages: AtomicU64::new(0),
             present: AtomicU64::new(0),
@@ -205,9 +211,34 @@ impl Hub {
         locked(&self.commander).is_none_or(|now| now.heard.elapsed() > STALE)
     }
 
-    /// Keeps a finished recording for downloads, instead of the one before.
+    /// Keeps a finished recording for downloads, instead of the one before. That one is written to files if no
+    /// page has taken it, on a thread of its own: the source does not wait.
     pub(crate) fn keep(&self, finished: Arc<Finished>) {
-        *locked(&self.recording) = Some(finished);
+        if let Some(before) = locked(&self.recording).replace(finished) {
+            let rescue = move || before.rescue(&Estimators::names());
+            locked(&self.rescues).push(thread::spawn(rescue));
+        }
+    }
+
+    /// The server ends: recordings that no page has taken are in files then.
+    ///
+    /// # Errors
+    /// [`Failure`] if one cannot be written.
+    pub(crate) fn rescue(&self) -> Result<(), Failure> {
+        let panicked = |_| {
+            Err(Failure::Check(
+                "a thread that writes a recording panicked".to_owned(),
+            ))
+        };
+        let before = std::mem::take(&mut *locked(&self.rescues));
+        let mut rescued = Ok(());
+        for thread in before {
+            rescued = rescued.and(thread.join().unwrap_or_else(panicked));
+        }
+        let last = self.recording();
+        // Also after a failure.
+        let last = last.map_or(Ok(()), |last| last.rescue(&Estimators::names()));
+        rescued.and(last)
     }
 
     /// The latest finished recording.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use drivers::link::{Hello, Message};
 use recordings::record::{choose, csv};
@@ -13,6 +14,9 @@ use terminal::output::{note, write_whole};
 
 /// Kinds of files of a recording.
 const FILES: [&str; 2] = ["csv", "mcap"];
+
+/// Held while the names of files are chosen and the files are written.
+static NAMES: Mutex<()> = Mutex::new(());
 
 /// Longest recording, rows: two minutes, so that its memory is bounded.
 pub(crate) const LONGEST: usize = 120_000;
@@ -95,6 +99,8 @@ impl Finished {
         else {
             return Ok(());
         };
+        // Two recordings at a time would choose one name.
+        let _names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
         let name = (1..).map(|number| format!("scope-{number}")).find(|name| {
             FILES
                 .iter()

@@ -7,7 +7,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{RawQuery, Request, State, WebSocketUpgrade};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{Html, IntoResponse, Response};
 use axum::routing::get;
@@ -17,6 +17,7 @@ use tokio::net::TcpListener;
 use crate::estimators::Estimators;
 use crate::hub::Hub;
 use crate::page;
+use crate::recorder::Finished;
 use crate::session::{LONGEST_MESSAGE, session};
 use crate::token::random;
 
@@ -152,26 +153,25 @@ async fn socket(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Resp
         .on_upgrade(move |socket| session(socket, shared.hub))
 }
 
-async fn csv(State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
-    download(shared, query, "text/csv", |finished| {
+async fn csv(method: Method, State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
+    download(shared, method, query, "text/csv", |finished| {
         finished.csv().map(String::into_bytes)
     })
     .await
 }
 
-async fn mcap(State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
-    download(shared, query, "application/octet-stream", move |finished| {
-        finished.mcap(&Estimators::names())
-    })
-    .await
+async fn mcap(method: Method, State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
+    let make = |finished: &Finished| finished.mcap(&Estimators::names());
+    download(shared, method, query, "application/octet-stream", make).await
 }
 
 /// A file of the latest recording, made on a thread of its own.
 async fn download(
     shared: Shared,
+    method: Method,
     query: Option<String>,
     kind: &'static str,
-    make: impl FnOnce(&crate::recorder::Finished) -> Result<Vec<u8>, String> + Send + 'static,
+    make: impl FnOnce(&Finished) -> Result<Vec<u8>, String> + Send + 'static,
 ) -> Response {
     if query != Some(format!("token={}", shared.hub.token)) {
         return refuse(StatusCode::FORBIDDEN, "wrong token");
@@ -181,7 +181,10 @@ async fn download(
     };
     let made = tokio::task::spawn_blocking(move || {
         let bytes = make(&finished)?;
-        finished.take();
+        // A page that asks for the head gets no file.
+        if method == Method::GET {
+            finished.take();
+        }
         Ok::<_, String>(bytes)
     });
     match made.await {

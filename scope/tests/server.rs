@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Client, Server, get, image};
+use common::{Client, Server, get, image, request};
 use serde_json::{Value, json};
 
 fn is_on(status: &Value) -> bool {
@@ -241,6 +241,33 @@ fn recording_that_a_page_has_taken_is_not_written_again() {
     assert!(server.interrupt());
     let files = std::fs::read_dir(&server.folder).expect("a folder");
     assert_eq!(files.count(), 0);
+}
+
+#[test]
+fn recordings_that_no_page_has_taken_are_written_each() {
+    let mut server = Server::emulated();
+    let mut page = running(&server);
+    for frames in [100, 300] {
+        page.order(&json!({"do": "record", "on": true}));
+        page.status("a recording", |status| {
+            status["recording"].as_u64() > Some(frames)
+        });
+        page.order(&json!({"do": "record", "on": false}));
+        page.status("its end", |status| {
+            status["recording"].is_null() && status["recorded"] == true
+        });
+        // The head of a file is no file.
+        let path = format!("/recording.mcap?token={}", server.token);
+        assert_eq!(request("HEAD", server.port, &path, &[]).0, 200);
+    }
+    assert!(server.interrupt());
+    let rows = [1, 2].map(|number| {
+        let csv = server.folder.join(format!("scope-{number}.csv"));
+        let recording = recordings::recording::Recording::read(&csv).expect("a recording");
+        assert!(csv.with_extension("mcap").exists());
+        recording.t.len()
+    });
+    assert!(rows[0] > 100 && rows[1] > 300, "{rows:?}");
 }
 
 #[test]

@@ -142,8 +142,18 @@ impl Drop for Server {
 
 /// The status and the body of an answer.
 pub(crate) fn get(port: u16, path: &str, headers: &[(&str, &str)]) -> (u16, String) {
+    request("GET", port, path, headers)
+}
+
+/// The status and the body of an answer to a request with this method.
+pub(crate) fn request(
+    method: &str,
+    port: u16,
+    path: &str,
+    headers: &[(&str, &str)],
+) -> (u16, String) {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).expect("a connection");
-    let mut request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n");
+    let mut request = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n");
     if !headers.iter().any(|(name, _)| *name == "Host") {
         request += &format!("Host: 127.0.0.1:{port}\r\n");
     }
