@@ -54,7 +54,14 @@ class Controls {
       name.textContent = p.name;
       input.type = "range"; input.min = p.least; input.max = p.most; input.step = "any";
       input.id = `parameter-${p.name}`;
-      const show = (v) => { out.textContent = `${Number(v).toPrecision(3)} ${p.unit}`; };
+      // The label names its first control, which is the output.
+      input.setAttribute("aria-label", `${p.name} of ${scene.name}`);
+      const show = (v) => {
+        const text = `${Number(v).toPrecision(3)} ${p.unit}`.trim();
+        if (out.textContent === text) return;
+        out.textContent = text;
+        input.setAttribute("aria-valuetext", text);
+      };
       // What the board has, but for a value that is on its way there.
       const follow = () => {
         if (performance.now() - (this.edited.get(key) ?? -Infinity) < EDITED_MS) return;
@@ -104,6 +111,15 @@ class Controls {
       button.onclick = () => this.link.send({ do: "estimator", number });
       return button;
     }));
+    // As in a group of radio buttons: an arrow key goes to the next one and chooses it.
+    $("estimators").onkeydown = (e) => {
+      const by = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[e.key];
+      const buttons = [...$("estimators").children], from = buttons.indexOf(e.target);
+      if (!by || from < 0) return;
+      e.preventDefault();
+      const next = buttons[(from + by + buttons.length) % buttons.length];
+      next.focus(); next.click();
+    };
   }
 
   makeFaults() {
@@ -189,6 +205,7 @@ class Controls {
       $("play").textContent = s.plays ? "Pause" : "Play";
       if (document.activeElement !== $("seek") || s.plays) $("seek").value = s.t;
       $("at").textContent = `${s.t.toFixed(2)} s`;
+      $("seek").setAttribute("aria-valuetext", $("at").textContent);
       return;
     }
     this.silence(s.silent);

@@ -60,9 +60,11 @@ function showNumbers(store, controls) {
   const words = (value) => `${value.toFixed(1)} mN (${Math.abs(value) < limit ? "below" : "above"} the ${limit} mN that a fingertip notices)`;
   setText("felt-words", Number.isFinite(parasitic) ? `Not commanded by the scene: ${words(parasitic)}${Number.isFinite(tactile) ? `; roughness ${tactile.toFixed(1)} mN` : ""}.` : "");
   const number = store.latest("estimator");
-  document.querySelectorAll("#estimators button").forEach((b, k) => {
-    const is = String(k === number);
+  const buttons = [...$("estimators").children];
+  buttons.forEach((b, k) => {
+    const is = String(k === number), tab = k === (number in buttons ? number : 0) ? 0 : -1;
     if (b.getAttribute("aria-checked") !== is) b.setAttribute("aria-checked", is);
+    if (b.tabIndex !== tab) b.tabIndex = tab;
   });
   const c = controls.counts;
   setText("lost", `Frames lost: ${store.lost} on the way here${Number.isFinite(store.latest("drops")) ? `, ${store.latest("drops")} by the board` : ""}` +

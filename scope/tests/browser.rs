@@ -324,6 +324,44 @@ fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
 }
 
 #[test]
+fn controls_have_names_and_arrow_keys_choose_an_estimator() {
+    let server = Server::emulated();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &tab);
+    run_scene(&mut browser, &tab, "wall");
+    let tree = browser.tell(&tab, "Accessibility.getFullAXTree", &json!({}));
+    let nodes = tree["nodes"].as_array().expect("nodes");
+    let named = |role: &str| -> Vec<_> {
+        let of_role = nodes.iter().filter(|it| it["role"]["value"] == role);
+        of_role.map(|it| it["name"]["value"].to_string()).collect()
+    };
+    let sliders = named("slider");
+    for name in ["position of wall", "stiffness of wall", "damping of wall"] {
+        assert!(sliders.contains(&format!("\"{name}\"")), "{sliders:?}");
+    }
+    assert!(!sliders.contains(&"\"\"".to_owned()), "{sliders:?}");
+
+    browser.wait(&tab, "scope.store.latest('estimator') === 0");
+    browser.wait(
+        &tab,
+        "$('estimator-0').tabIndex === 0 && $('estimator-1').tabIndex === -1",
+    );
+    browser.value(&tab, "$('estimator-0').focus()");
+    browser.key(&tab, "ArrowRight");
+    browser.wait(
+        &tab,
+        "scope.store.latest('estimator') === 1 && document.activeElement.id === 'estimator-1' \
+         && $('estimator-1').tabIndex === 0",
+    );
+    browser.key(&tab, "ArrowLeft");
+    browser.wait(&tab, "scope.store.latest('estimator') === 0");
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+#[test]
 fn sliders_have_the_values_of_the_board() {
     let server = Server::emulated();
     let Some(mut browser) = Browser::start() else {
