@@ -15,7 +15,7 @@ const link = connect({
   facts(facts) {
     if (scope.store) { scope.store.clear(); scope.store.next = null; scope.store.epoch = null; return; }
     scope.facts = facts;
-    scope.store = new Store(facts.channels, facts.estimators, facts.interval);
+    scope.store = new Store(facts.channels, facts.estimators, facts.source.gap);
     scope.plots = new Plots($("plots"), facts, scope.store);
     scope.view = new DeviceView($("device"), facts, scope.store, (order) => link.send(order));
     scope.controls = new Controls(facts, link, scope.view, scope.plots);

@@ -75,7 +75,7 @@ class Plots {
       const plot = new uPlot({
         width: this.width(card), height: spec.height,
         scales: { x: { time: false }, y: { range: (_, low, high) => span(low, high, spec) } },
-        axes: [{ ...axis, size: 28 }, { ...axis, size: 54 }],
+        axes: [{ ...axis, size: 28 }, { ...axis, size: axisSize }],
         series: [{ label: "t", value: (_, t) => (t == null ? "–" : t.toFixed(3) + " s") }, ...series], bands,
         legend: { live: true }, cursor: { sync: { key: "scope" }, drag: { x: true, y: false, setScale: false } },
         hooks: {
@@ -127,6 +127,17 @@ function span(low, high, { mark, least }) {
   if (mark) { low = Math.min(low, -mark * 1.3); high = Math.max(high, mark * 1.3); }
   const pad = Math.max((high - low) * 0.06, Math.abs(high) * 1e-3, least);
   return [low - pad, high + pad];
+}
+
+// The width of an axis: that of its longest label, and not below that of four digits, so that plots stay aligned.
+function axisSize(u, values, number, cycle) {
+  const axis = u.axes[number], least = 54;
+  // The width decides on the labels: it is computed once.
+  if (cycle > 1) return axis._size;
+  const [font] = axis.font;
+  u.ctx.font = font;
+  const widths = (values ?? []).map((text) => u.ctx.measureText(text ?? "").width / devicePixelRatio);
+  return Math.ceil(Math.max(least, axis.ticks.size + axis.gap + Math.max(0, ...widths)));
 }
 
 function marks(u, mark, colour) {

@@ -3,11 +3,12 @@
 const KEPT = 60000, HEADER_BYTES = 16;
 
 class Store {
-  constructor(channels, estimators, interval) {
+  // Between rows that are more than `gap` s apart there are no values.
+  constructor(channels, estimators, gap) {
     this.names = [...channels.map((c) => c.name), ...estimators.map((e) => "estimate:" + e.name)];
     this.column = Object.fromEntries(this.names.map((name, k) => [name, k]));
     this.width = this.names.length;
-    this.interval = interval;
+    this.gap = gap;
     this.time = new Float64Array(KEPT);
     this.values = this.names.map(() => new Float32Array(KEPT));
     this.lost = 0;
@@ -55,15 +56,17 @@ class Store {
   }
 
   // Columns for a plot from `from` to `to`, at most two points a bucket: the least and the largest
-  // value, in their order, so that no peak is lost.
+  // value, in their order, so that no peak is lost. A gap has a point without values.
   decimate(series, from, to, buckets) {
     const begin = Math.max(this.first, this.search(from) - 1);
     const end = Math.min(this.count, this.search(to) + 1);
     const size = Math.max(1, Math.ceil((end - begin) / buckets));
     const t = [], out = series.map(() => []);
-    for (let b = begin; b < end; b += size) {
-      const stop = Math.min(end, b + size);
-      if (size < 3) {
+    const time = (k) => this.time[k % KEPT], isGap = (k) => time(k) - time(k - 1) > this.gap;
+    for (let b = begin, stop; b < end; b = stop) {
+      if (b > begin && isGap(b)) { t.push((time(b - 1) + time(b)) / 2); for (const values of out) values.push(null); }
+      for (stop = b + 1; stop < Math.min(end, b + size) && !isGap(stop);) stop++;
+      if (stop - b < 3) {
         for (let k = b; k < stop; k++) {
           t.push(this.time[k % KEPT]);
           series.forEach((get, s) => out[s].push(finite(get(k % KEPT))));

@@ -27,6 +27,8 @@ use crate::tactile::Tactile;
 
 /// Telemetry frames of a second.
 pub(crate) const FRAMES_HZ: f64 = 1e3;
+/// Time between two frames from which on some between them are missing, s.
+pub(crate) const GAP_S: f64 = 2.5 / FRAMES_HZ;
 /// Interval of the status.
 const STATUS: Duration = Duration::from_millis(100);
 

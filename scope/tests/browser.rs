@@ -324,6 +324,52 @@ fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
 }
 
 #[test]
+fn gap_of_a_recording_has_no_line_and_an_axis_has_the_width_of_its_labels() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/data/logs/missing-rows.csv"
+    );
+    let server = Server::start(&["--recording", path]);
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    // Its rows, with a point without values in each gap.
+    browser.wait(
+        &tab,
+        "scope.status?.plays === false && scope.store.count > 10",
+    );
+    let gaps = browser.value(
+        &tab,
+        "(() => { const s = scope.store; let n = 0; for (let k = 1; k < s.count; k++) n += s.time[k] - s.time[k - 1] > s.gap; return n; })()",
+    );
+    assert!(gaps.as_u64() > Some(0), "{gaps}");
+    for buckets in [10_000, 10] {
+        let nulls = browser.value(
+            &tab,
+            &format!(
+                "(() => {{ const s = scope.store; const [t, x] = s.decimate([(k) => s.time[k]], s.time[0], s.end, {buckets}); \
+                 return x.filter((value) => value === null).length; }})()"
+            ),
+        );
+        assert_eq!(nulls, gaps, "{buckets}");
+    }
+    // The axis of six digits is as wide as its labels.
+    browser.value(
+        &tab,
+        "(() => { const { plot } = scope.plots.plots[0]; plot.setData([[0, 1], [1e6, 2e6], ...plot.data.slice(2).map(() => [null, null])]); \
+         plot.setScale('y', { min: 1e6, max: 2e6 }); })()",
+    );
+    browser.wait(
+        &tab,
+        "(() => { const { plot } = scope.plots.plots[0], axis = plot.axes[1]; plot.ctx.font = axis.font[0]; \
+         const widest = Math.max(...axis._values.map((text) => plot.ctx.measureText(text).width)) / devicePixelRatio; \
+         return axis._values.some((text) => text.length > 6) && axis._size >= widest + axis.ticks.size + axis.gap; })()",
+    );
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+#[test]
 fn controls_have_names_and_arrow_keys_choose_an_estimator() {
     let server = Server::emulated();
     let Some(mut browser) = Browser::start() else {
@@ -383,7 +429,7 @@ fn sliders_have_the_values_of_the_board() {
     browser.wait(&tab, &shown("0.300"));
     enter(&mut browser, "0.125");
     browser.wait(&tab, "scope.status.tuned['2.1'] === 0.125");
-    browser.value(&tab, "location.reload()");
+    browser.tell(&tab, "Page.reload", &json!({}));
     browser.wait(
         &tab,
         "scope.role?.commands === true && scope.status?.mode === 'boot'",

@@ -16,7 +16,7 @@ use terminal::failure::Failure;
 use terminal::output::note;
 
 use super::Source;
-use crate::desk::Desk;
+use crate::desk::{Desk, GAP_S};
 use crate::facts;
 use crate::hub::Hub;
 use crate::order::Order;
@@ -110,6 +110,7 @@ impl Source for RealBoard {
             "title": "board",
             "text": "A board at its link. What only a simulation knows is missing.",
             "from": self.port.name(),
+            "gap": GAP_S,
         });
         all
     }

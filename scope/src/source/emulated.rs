@@ -18,7 +18,7 @@ use virtual_board::run::Setup;
 use super::Source;
 use super::pacer::Pacer;
 use super::truths::Truths;
-use crate::desk::{Desk, FRAMES_HZ, Truth};
+use crate::desk::{Desk, FRAMES_HZ, GAP_S, Truth};
 use crate::facts;
 use crate::fault_watch::FaultWatch;
 use crate::hub::Hub;
@@ -75,6 +75,7 @@ impl Source for Emulated {
             "title": "virtual board",
             "text": "The flash image runs on an emulated board with a simulated device. No silicon runs.",
             "from": self.from,
+            "gap": GAP_S,
         });
         all["faults"] = faults.collect();
         all

@@ -92,6 +92,7 @@ impl Source for Recorded {
             "from": self.name,
             "begin": self.rows[0][0],
             "end": self.rows[last][0],
+            "gap": gap(&self.rows),
         });
         all
     }
@@ -136,6 +137,18 @@ impl Source for Recorded {
         }
         Ok(())
     }
+}
+
+/// Time between two rows from which on some between them are missing, s: more than twice the step that few steps
+/// exceed, so that an uneven clock has no gaps.
+fn gap(rows: &[Vec<f64>]) -> f64 {
+    let mut steps: Vec<f64> = rows
+        .windows(2)
+        .map(|pair| pair[1][0] - pair[0][0])
+        .collect();
+    steps.sort_unstable_by(f64::total_cmp);
+    let usual = steps.get(steps.len() * 9 / 10).copied();
+    2.5 * usual.unwrap_or_default()
 }
 
 /// The position in a recording.
@@ -218,6 +231,20 @@ mod tests {
             assert_eq!(row.len(), CHANNELS.len() + names.len());
             assert!(row[even].is_nan() && row[any].is_finite());
         }
+    }
+
+    #[test]
+    fn missing_rows_are_a_gap_and_an_uneven_clock_is_none() {
+        let rows = |times: &[f64]| -> Vec<Vec<f64>> { times.iter().map(|t| vec![*t]).collect() };
+        let mut times: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
+        times.extend([2.0, 2.01]);
+        let even = gap(&rows(&times));
+        assert!((0.02..0.03).contains(&even), "{even}");
+        let times: Vec<f64> = (0..100).map(|k| f64::from(k * k % 7 + 10 * k)).collect();
+        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let uneven = gap(&rows(&times));
+        assert!(steps.fold(0.0, f64::max) < uneven, "{uneven}");
+        assert_eq!(gap(&rows(&[1.0, 2.0])), 2.5);
     }
 
     /// A recording on which a source has waited for some time without a page.
