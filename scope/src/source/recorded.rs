@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use catalogue::parameters::Parameters;
 use channels::CHANNELS;
 use experiments::replay::replay;
+use experiments::uneven::{self, Chosen};
 use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
 use recordings::log::Log;
 use serde_json::{Value, json};
@@ -57,16 +58,21 @@ impl Recorded {
         } = options.whole(&log, file)?;
         stated.iter().chain(&recording.notes).for_each(note);
         let kinds = Estimators::kinds();
+        // Those that are not made for its clock are left out, as by cargo sim replay.
+        let parameters = Parameters::default();
+        let clock = uneven::Recorded::new(&name, &recording, &device, &parameters);
+        let chosen = Chosen::new(&kinds, false, &clock)?;
+        chosen.notes(&clock).iter().for_each(note);
         let replayed = replay(
             &recording,
             &name,
-            &kinds,
+            &chosen.kinds,
             &device,
-            &Parameters::default(),
+            &parameters,
             &|| (),
         )?;
         let mut rows = channels::rows(&recording, &board, &device, &replayed.estimates);
-        // An estimator that lacks a column or an even clock has a channel without values.
+        // An estimator that is left out has a channel without values.
         for (k, kind) in kinds.iter().enumerate() {
             let is_there = replayed
                 .estimates
@@ -231,6 +237,31 @@ mod tests {
             assert_eq!(row.len(), CHANNELS.len() + names.len());
             assert!(row[even].is_nan() && row[any].is_finite());
         }
+    }
+
+    /// At less than 100 rows a second, as `cargo sim replay` reads it.
+    #[test]
+    fn recording_of_a_low_rate_has_the_estimators_that_are_made_for_it() {
+        let file = std::env::temp_dir().join(format!("scope-slow-{}.csv", std::process::id()));
+        let rows = (0..200).map(|k| format!("{},{}\n", f64::from(k) * 0.02, 7 * k));
+        let text = format!("t,counts_large\n{}", rows.collect::<String>());
+        std::fs::write(&file, text).expect("a file");
+        let (options, device) = (RecordingOptions::default(), DeviceFile::default());
+        let recorded = Recorded::read(&file, &options, &device);
+        std::fs::remove_file(&file).expect("a file");
+        let recorded = recorded.expect("a recording");
+        let names = Estimators::names();
+        let values = |k: usize| recorded.rows.iter().map(move |row| row[CHANNELS.len() + k]);
+        let made = (0..names.len())
+            .filter(|k| values(*k).all(f64::is_finite))
+            .count();
+        let left_out = (0..names.len())
+            .filter(|k| values(*k).all(f64::is_nan))
+            .count();
+        assert!(
+            made > 0 && left_out > 0 && made + left_out == names.len(),
+            "{made} {left_out}"
+        );
     }
 
     #[test]
