@@ -32,13 +32,20 @@ impl Telemetry {
     /// begins a run even if no frame follows it: a session ends there.
     #[must_use]
     pub fn runs(&self) -> Vec<Run<'_>> {
-        let decimation = self.decimation();
+        let decimations = self.decimations();
+        let of_boot = |boot: Option<&Boot>| {
+            let rate = boot.map(|boot| boot.rate_hz);
+            let found = decimations.iter().find(|(of, _)| *of == rate);
+            found.map_or(1, |(_, decimation)| *decimation)
+        };
+        let mut decimation = of_boot(None);
         let mut runs: Vec<Run> = Vec::new();
         let mut boots = self.boots.iter().peekable();
         for (at, frame) in self.frames.iter().enumerate() {
             let mut booted = None;
             while let Some(boot) = boots.next_if(|boot| boot.after <= at) {
                 booted = Some(*boot);
+                decimation = of_boot(Some(boot));
             }
             if let (None, Some(run)) = (booted, runs.last_mut()) {
                 if run.take(frame, decimation) {
@@ -66,16 +73,35 @@ impl Telemetry {
         runs
     }
 
-    /// Control ticks from frame to frame: the most frequent difference.
-    fn decimation(&self) -> u32 {
-        let neighbours = self.frames.windows(2).filter_map(|pair| {
-            let [ticks, frames] = steps(&pair[0], &pair[1])?;
-            (frames == 1).then_some(ticks)
-        });
-        let mut apart: Vec<u32> = neighbours.collect();
-        apart.sort_unstable();
-        let longest = apart.chunk_by(u32::eq).max_by_key(|same| same.len());
-        longest.map_or(1, |same| same[0])
+    /// Control ticks from frame to frame, for each control rate of a boot line: the most frequent difference in the
+    /// frames after such lines.
+    fn decimations(&self) -> Vec<(Option<f64>, u32)> {
+        let mut apart: Vec<(Option<f64>, Vec<u32>)> = Vec::new();
+        let (mut begin, mut rate) = (0, None);
+        let ends = self
+            .boots
+            .iter()
+            .map(|boot| (boot.after, Some(boot.rate_hz)));
+        for (end, next) in ends.chain([(self.frames.len(), None)]) {
+            let frames = self.frames.get(begin..end).unwrap_or_default();
+            let neighbours = frames.windows(2).filter_map(|pair| {
+                let [ticks, frames] = steps(&pair[0], &pair[1])?;
+                (frames == 1).then_some(ticks)
+            });
+            match apart.iter_mut().find(|(of, _)| *of == rate) {
+                Some((_, all)) => all.extend(neighbours),
+                None => apart.push((rate, neighbours.collect())),
+            }
+            (begin, rate) = (end, next);
+        }
+        let most_frequent = |mut apart: Vec<u32>| {
+            apart.sort_unstable();
+            let longest = apart.chunk_by(u32::eq).max_by_key(|same| same.len());
+            longest.map_or(1, |same| same[0])
+        };
+        let each = apart.into_iter();
+        each.map(|(rate, apart)| (rate, most_frequent(apart)))
+            .collect()
     }
 }
 
@@ -192,6 +218,38 @@ mod tests {
             [0, 1, 2].map(|n| runs[n].rate_hz()),
             [None, None, Some(1e4)]
         );
+    }
+
+    /// Two images in one log: each boot line states the rate of its frames.
+    #[test]
+    fn sessions_of_two_control_rates_are_runs_without_damage() {
+        let mut telemetry = frames(&[
+            [0, 0],
+            [1, 10],
+            [2, 20],
+            [3, 30],
+            [0, 0],
+            [1, 20],
+            [2, 40],
+            [0, 5],
+            [1, 15],
+        ]);
+        let boot = |after, rate_hz| Boot {
+            after,
+            rate_hz,
+            device: None,
+            presets: None,
+        };
+        telemetry.boots = vec![boot(0, 1e4), boot(4, 2e4), boot(7, 1e4)];
+        let runs = telemetry.runs();
+        let found: Vec<_> = runs.iter().map(|run| (run.rate_hz(), ticks(run))).collect();
+        let expected = [
+            (Some(1e4), vec![0, 10, 20, 30]),
+            (Some(2e4), vec![0, 20, 40]),
+            (Some(1e4), vec![0, 10]),
+        ];
+        assert_eq!(found, expected);
+        assert!(runs.iter().all(|run| run.gaps == Gaps::default()));
     }
 
     #[test]
