@@ -45,6 +45,8 @@ pub struct Identification {
     pub unexplained: f64,
     /// Measured and modelled velocity of each recording.
     pub comparisons: Vec<ModelComparison>,
+    /// Whether the values are compared with the default device, because no device file is given.
+    pub is_default: bool,
 }
 
 /// Largest allowed share of the motor's torque that the model does not contain.
@@ -110,6 +112,7 @@ pub fn identify(
         windows: (gathered.large.usable.len(), gathered.large.windows),
         unexplained: fit.unexplained / fit.driven,
         comparisons: model::compare(recordings, device, &fit),
+        is_default: false,
     })
 }
 
@@ -127,14 +130,27 @@ fn unseen(name: &str, device: &Device) -> Failure {
     ))
 }
 
-/// The assumption on the encoders without a device file.
+/// The assumption on the encoders without a device file. `large` and `small` tell whether the counts of each
+/// encoder are assumed; `None` if neither is.
 #[must_use]
-pub fn default_counts(device: &Device) -> String {
-    format!(
-        "large.counts_per_rev = {} and small.counts_per_rev = {} of the default device, because no \
-         --device is given; with other encoders every value is wrong",
-        device.stages.large.counts_per_rev, device.stages.small.counts_per_rev
-    )
+pub fn default_counts(device: &Device, large: bool, small: bool) -> Option<String> {
+    let (stages, of) = (
+        device.stages,
+        "of the default device, because no --device is given",
+    );
+    let large = large.then(|| format!("large.counts_per_rev = {}", stages.large.counts_per_rev));
+    let small = small.then(|| format!("small.counts_per_rev = {}", stages.small.counts_per_rev));
+    match (large, small) {
+        (Some(large), Some(small)) => Some(format!(
+            "{large} and {small} {of}; with other encoders every value is wrong"
+        )),
+        (one, other) => {
+            let key = one.or(other)?;
+            Some(format!(
+                "{key} {of}; with another encoder every value is wrong"
+            ))
+        }
+    }
 }
 
 fn assumptions(known: Known, held: bool) -> Vec<String> {

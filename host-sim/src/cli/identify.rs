@@ -73,8 +73,12 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     }
     let clamped = options.clamped;
     let mut found = identify::identify(&recordings, &current_options, &device, known, clamped)?;
-    if !options.device.is_given() && !counts_are_known {
-        found.assumed.insert(0, identify::default_counts(&device));
+    if !options.device.is_given() {
+        let mut traces = recordings.iter().map(|(_, recording)| &recording.trace);
+        let has_small = traces.any(|trace| trace.counts_small.is_some());
+        let assumed = identify::default_counts(&device, !counts_are_known, has_small);
+        found.assumed.splice(0..0, assumed);
+        found.is_default = true;
     }
     if let Some(out) = &options.out {
         let identified = |quantity: &Quantity| quantity.rejected.is_none();

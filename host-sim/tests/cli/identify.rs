@@ -87,6 +87,22 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
         "{default}"
     );
 
+    let default = words(&default).join(" ");
+    assert!(
+        default.contains("of the default device's 0.9600 mN.m.s/rad")
+            && default.contains("the device differs")
+            && !default.contains("the file"),
+        "{default}"
+    );
+    // The option gives the counts of one encoder.
+    let default = good("identify excite.csv --counts-per-rev 4096");
+    let default = words(&default).join(" ");
+    assert!(
+        default.contains("assumed: small.counts_per_rev = 20000 of the default device")
+            && !default.contains("large.counts_per_rev"),
+        "{default}"
+    );
+
     // An uneven clock is what is wrong, not the motion.
     let recorded = folder.text("excite.csv");
     let mut uneven = String::new();

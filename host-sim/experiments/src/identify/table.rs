@@ -67,7 +67,10 @@ pub fn text(found: &Identification) -> String {
         let _ = writeln!(
             text,
             "{}",
-            wrapped(&format!("health: {}", health(quantity)), 4)
+            wrapped(
+                &format!("health: {}", health(quantity, found.is_default)),
+                4
+            )
         );
     }
     let _ = writeln!(
@@ -83,22 +86,27 @@ pub fn text(found: &Identification) -> String {
     text
 }
 
-/// Comparison of a value with that of the device file, relative to its interval.
-fn health(quantity: &Quantity) -> String {
+/// Comparison of a value with that of the device file, or of the default device, relative to its interval.
+fn health(quantity: &Quantity, is_default: bool) -> String {
     let (part, inside) = quantity.health();
     let Unit { name, per_si, .. } = quantity.unit;
     let verdict = match (inside, quantity.key) {
         (true, _) => "inside its interval",
         _ if (part - 1.0).abs() < 0.01 => "outside its interval, but by less than 1 %",
+        _ if is_default => "outside its interval: the device differs, or an assumption is wrong",
         (false, DAMPING) => "outside its interval: the coupler is hot, or the file is wrong",
         (false, _) => "outside its interval: the file or an assumption is wrong",
     };
+    let of = match is_default {
+        true => "the default device",
+        false => "the file",
+    };
     let file = per_si * quantity.file;
     if quantity.file == 0.0 {
-        return format!("{}: the file has none, {verdict}", quantity.key);
+        return format!("{}: {of} has none, {verdict}", quantity.key);
     }
     format!(
-        "{}: {part:.3} of the file's {file:.4} {name}, {:+.1} %, {verdict}",
+        "{}: {part:.3} of {of}'s {file:.4} {name}, {:+.1} %, {verdict}",
         quantity.key,
         100.0 * (part - 1.0)
     )
