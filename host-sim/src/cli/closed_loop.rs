@@ -6,7 +6,7 @@ use haptic_control::LoopPoles;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
-use experiments::closed_loop::{environments_with, loop_ticks, named};
+use experiments::closed_loop::{check_handle, check_stamps, environments_with, loop_ticks, named};
 use experiments::compare::{Cost, Settings};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
@@ -144,12 +144,7 @@ pub(super) fn write(
 /// The estimator of the handle's velocity of this name, or the default one.
 pub(super) fn handle(name: Option<&str>) -> Result<&'static Kind, Failure> {
     let handle = Kind::named(name.unwrap_or(DEFAULT_ESTIMATOR))?;
-    if handle.needs.current {
-        return Err(Failure::Input(format!(
-            "--handle-estimator {}: it models the large motor, not the handle; choose one without current",
-            handle.name
-        )));
-    }
+    check_handle("--handle-estimator", handle)?;
     Ok(handle)
 }
 
@@ -160,13 +155,7 @@ pub(super) fn estimators(names: &[String], handle: &Kind) -> Result<Vec<&'static
     if names.is_empty() {
         estimators.retain(|kind| !kind.needs.edge);
     }
-    let all = estimators.iter().copied().chain([handle]);
-    if let Some(kind) = all.into_iter().find(|kind| kind.needs.edge) {
-        return Err(Failure::Input(format!(
-            "{}: needs edge time stamps, which the closed loop does not have; choose another estimator",
-            kind.name
-        )));
-    }
+    check_stamps(estimators.iter().copied().chain([handle]))?;
     Ok(estimators)
 }
 

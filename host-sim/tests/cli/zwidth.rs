@@ -201,6 +201,14 @@ fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
     for (arguments, said) in [
         (&["--estimator", "kalmann"][..], "no estimator 'kalmann'"),
         (&["--handle", "pl"], "no estimator 'pl'"),
+        (
+            &["--handle", "m-over-t"],
+            "m-over-t: needs edge time stamps, which the closed loop does not have",
+        ),
+        (
+            &["--handle", "adaptive"],
+            "--handle adaptive: it models the large motor, not the handle",
+        ),
         (&["--rate", "50"], "--rate 50: a closed loop needs a"),
         (
             &["--rate", "599", "--lines", "1024"],

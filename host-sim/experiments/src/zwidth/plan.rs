@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use shards::Experiment;
 
 use super::{BOUNDS_A_CASE, Boundary, LoopSetup, Settings, boundaries};
-use crate::closed_loop::loop_ticks;
+use crate::closed_loop::{check_handle, check_stamps, loop_ticks};
 use catalogue::estimators::Kind;
 use terminal::failure::Failure;
 
@@ -39,13 +39,9 @@ impl Experiment for Plan {
     fn jobs(&self) -> Result<Vec<LoopSetup>, Failure> {
         let kinds = self.estimators.iter().map(|name| Kind::named(name));
         let kinds: Vec<_> = kinds.collect::<Result<_, _>>()?;
-        if let Some(kind) = kinds.iter().find(|kind| kind.needs.edge) {
-            return Err(Failure::Input(format!(
-                "{}: needs edge time stamps, which the closed loop does not have; choose another estimator",
-                kind.name
-            )));
-        }
+        check_stamps(kinds.iter().copied())?;
         let handle = self.handle.as_deref().map(Kind::named).transpose()?;
+        handle.map_or(Ok(()), |kind| check_handle("--handle", kind))?;
         let triple = Kind::named("kalman-triple")?;
         let mut cases = Vec::new();
         for &rate_hz in &self.rates_hz {
