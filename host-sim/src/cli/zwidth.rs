@@ -13,9 +13,9 @@ use experiments::zwidth::{Boundary, Plan, Settings, rows, table, with_lines};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use shards::{Experiment as _, Part};
-use simulation::device::COUNTS_PER_REV;
+use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
-use terminal::output::Folder;
+use terminal::output::{Folder, note};
 
 use super::arguments::{ParameterOptions, distinct, kinds_at, loop_rate_help};
 use super::page;
@@ -46,7 +46,8 @@ pub(super) struct Zwidth {
     pub(super) exact: bool,
     #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + "; repeatable [default: 1000, 10000 and 11600]")]
     pub(super) rates: Vec<f64>,
-    /// Number of lines of the large encoder, 4 to 1000000; repeatable [default: 256, 1024 and 5000]
+    /// Number of lines of the large encoder, 4 to 1000000; repeatable [default: 256, 1024 and 5000; with
+    /// --device those of the device, a quarter of its counts per revolution]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(LINES))]
     pub(super) lines: Vec<u32>,
     /// Seed of the encoders' phases and of the disc's errors
@@ -110,6 +111,20 @@ pub(super) fn finish(
     page::print(outputs.json, &json, &text)
 }
 
+/// The lines of the device's own encoder. A note says which counts they are, if others than the device's and no
+/// lines are `given`.
+fn own_lines(device: &Device, given: &[u32]) -> u32 {
+    let counts = device.stages.large.counts_per_rev;
+    let lines = counts / 4;
+    if given.is_empty() && 4 * lines != counts {
+        note(format_args!(
+            "note: large.counts_per_rev = {counts} is no whole number of lines; {lines} lines, {} counts, are used",
+            4 * lines
+        ));
+    }
+    lines
+}
+
 /// All combinations of rate, encoder and estimator, in the order of the table.
 fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let device = options.device.load()?;
@@ -118,7 +133,10 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     for &rate_hz in &rates_hz {
         loop_ticks(rate_hz, 1.0)?;
     }
-    let lines = distinct(&options.lines, &[256, 1024, 5000]);
+    let lines = match options.device.is_given() {
+        true => distinct(&options.lines, &[own_lines(&device, &options.lines)]),
+        false => distinct(&options.lines, &[256, 1024, 5000]),
+    };
     let mut places = Vec::new();
     for &lines in &lines {
         let device = with_lines(&device, lines);

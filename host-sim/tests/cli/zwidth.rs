@@ -172,6 +172,30 @@ fn json_is_alone_on_standard_output_and_reproducible() {
 }
 
 #[test]
+fn encoder_of_a_device_file_is_the_default() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("mine.toml", "[large]\ncounts_per_rev = 1026\n");
+    let command = "zwidth --device mine.toml --estimator low-pass --rate 1000 --shard 1/1 --out";
+    let lines = |more: &str| {
+        let (_, errors) = folder.ends(0, &format!("{command} {} {more}", "parts"));
+        let heading = folder.text("parts/shard-1-of-1.jsonl");
+        let heading = heading.lines().next().unwrap();
+        let heading: serde_json::Value = serde_json::from_str(heading).unwrap();
+        (heading["settings"]["lines"].to_string(), errors)
+    };
+    let (own, errors) = lines("");
+    assert_eq!(own, "[256]");
+    assert!(
+        errors.contains(
+            "large.counts_per_rev = 1026 is no whole number of lines; 256 lines, 1024 counts"
+        ),
+        "{errors}"
+    );
+    let (given, errors) = lines("--lines 512");
+    assert_eq!((given.as_str(), errors.as_str()), ("[512]", ""));
+}
+
+#[test]
 fn page_has_figures_and_table() {
     let folder = Folder::new(HOST_SIM);
     let mut arguments = SHORT.to_vec();
