@@ -16,6 +16,11 @@ pub(super) const TURNS: f64 = 3.0 * TAU;
 /// Travel from which friction and torque are assumed to vary with the angle, rad.
 const VARIES: f64 = 0.5;
 
+/// Samples in half a window at this sampling period.
+pub(super) fn half_window(period_s: f64) -> usize {
+    ((HALF_S / period_s).round() as usize).max(FEWEST)
+}
+
 /// Signals of one shaft in one recording.
 pub(super) struct Shaft<'a> {
     pub(super) period_s: f64,
@@ -56,7 +61,7 @@ impl Equations {
     /// Adds the equations of recording `index` of `recordings`. Each recording has its own ripple
     /// columns, because it has its own origin of the angles.
     pub(super) fn add(&mut self, shaft: &Shaft<'_>, index: usize, recordings: usize) {
-        let half = ((HALF_S / shaft.period_s).round() as usize).max(FEWEST);
+        let half = half_window(shaft.period_s);
         let phi = TestFunction::new(half, shaft.period_s);
         let hop = (half / HOPS).max(1);
         let samples = shaft.own.angle.len();

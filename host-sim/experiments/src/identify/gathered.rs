@@ -1,6 +1,8 @@
 //! Everything that the recordings tell together: the equations of the shafts, and what limits them.
 
-use super::equations::{Equations, Shaft, TURNS};
+use std::f64::consts::TAU;
+
+use super::equations::{Equations, Shaft, TURNS, half_window};
 use super::fit::{Equation, Fit};
 use super::motion::Motion;
 use super::{MOST_UNEXPLAINED, WINDOW_S, breaks, handle, quantity};
@@ -17,6 +19,10 @@ const UNEVEN_WINDOWS: f64 = 0.5;
 /// Slowest rate at which a row is assumed to be a control tick, Hz; below it the lag is rejected.
 const LAG_RATE_HZ: f64 = 5000.0;
 
+/// Longest lag of the torque, relative to half a window: beyond it the series in powers of the lag is cut off too
+/// early, and every value is biased by more than its interval.
+const LONGEST_LAG: f64 = 0.09;
+
 /// The equations of all recordings, and properties of the recordings for messages.
 #[derive(Default)]
 pub(super) struct Gathered {
@@ -31,6 +37,8 @@ pub(super) struct Gathered {
     /// The part of `--column` that names the current of the first recording.
     current_option: Option<String>,
     slowest_hz: Option<f64>,
+    /// Half of the shortest window, s.
+    half_s: Option<f64>,
     /// The smallest and largest velocity of a window, rad/s.
     velocities: Option<[f64; 2]>,
     /// Whether a recording has no counts of the handle.
@@ -88,6 +96,8 @@ impl Gathered {
         self.largest_current = self.largest_current.max(largest);
         let slowest = self.slowest_hz.unwrap_or(trace.rate_hz);
         self.slowest_hz = Some(slowest.min(trace.rate_hz));
+        let half_s = half_window(period_s) as f64 * period_s;
+        self.half_s = Some(self.half_s.unwrap_or(half_s).min(half_s));
         let Some(handle) = &handle else {
             self.unseen = true;
             return Ok(());
@@ -184,6 +194,20 @@ impl Gathered {
                     true => "no hand or contact touched the shaft, and the handle was clamped",
                     false => "nothing else touched the shafts",
                 }
+            ));
+        }
+        if let Some(half_s) = self.half_s
+            && fit.lag_s > LONGEST_LAG * half_s
+        {
+            let longest_s = LONGEST_LAG * half_s;
+            return Err(format!(
+                "no constant is identified: the torque follows the current {:.1} ms late, and a delay above \
+                 {:.1} ms (an amplifier below {:.0} Hz) biases every value in windows of {:.0} ms; record the \
+                 measured current as column current_measured, or make the current loop faster",
+                1e3 * fit.lag_s,
+                1e3 * longest_s,
+                1.0 / (TAU * longest_s),
+                2e3 * half_s
             ));
         }
         Ok(fit)

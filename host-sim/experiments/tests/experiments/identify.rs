@@ -124,6 +124,28 @@ impl Tally {
     }
 }
 
+/// The series in the lag of the torque is cut off: with a long lag every value is biased.
+#[test]
+fn long_delay_of_the_torque_is_refused_and_a_short_one_is_exact() {
+    for (bandwidth_hz, is_refused) in [(20.0, true), (40.0, true), (80.0, true), (100.0, false)] {
+        let mut device = Device::default();
+        device.stages.amplifier_bandwidth.0 = bandwidth_hz;
+        let recording = record(&device, Hand::Still, 1, 1);
+        match found(vec![recording], torque_constant(&device)) {
+            Err(said) => assert!(
+                is_refused && said.contains("above 1.8 ms (an amplifier below 88 Hz)"),
+                "{bandwidth_hz} Hz: {said}"
+            ),
+            Ok(found) => {
+                assert!(!is_refused, "{bandwidth_hz} Hz");
+                let mut tally = Tally::default();
+                tally.add(&device, &found);
+                assert!(tally.worst < 0.005, "{bandwidth_hz} Hz: {}", tally.worst);
+            }
+        }
+    }
+}
+
 #[test]
 fn recording_with_a_held_handle_identifies_large_motor_coupler_and_amplifier() {
     let mut tally = Tally::default();
