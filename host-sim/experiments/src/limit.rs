@@ -19,7 +19,7 @@ use scoring::score::{Truth, Wanted};
 use simulation::scenario::{Role, ScenarioName, TORQUE_INTENSITY_NM2_S};
 use terminal::failure::Failure;
 
-pub use filter::{Noise, velocities};
+pub use filter::{Filtered, Noise, filter};
 
 /// Error of one estimator, or of the particle filter, in one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -38,6 +38,10 @@ pub struct LimitRow {
     pub rms_pct: f64,
     /// RMS error over that of the particle filter with the same signals.
     pub over_limit: f64,
+    /// Of the particle filter the share of the ticks in which nearly no particle agrees with the encoder, 0 to 1;
+    /// of an estimator 0.
+    #[serde(skip)]
+    pub collapsed: f64,
 }
 
 /// Default scenarios.
@@ -51,6 +55,43 @@ pub const SCENARIOS: [ScenarioName; 5] = {
 #[must_use]
 pub fn is_bound(scenario: ScenarioName) -> bool {
     scenario.role() == Role::Linear
+}
+
+/// RMS error over the limit, below which the limit is wrong: the filter's own random error is smaller.
+const BELOW: f64 = 0.97;
+/// Share of the ticks with too few particles, from which the filter's error is not that of its model.
+const COLLAPSED: f64 = 0.01;
+
+/// Lines on `particles` that are too few: runs in which nearly none agree with the encoder, and bounds that an
+/// estimator is below.
+#[must_use]
+pub fn too_few(rows: &[LimitRow], particles: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    for row in rows {
+        let LimitRow {
+            estimator,
+            scenario,
+            rate_hz,
+            ..
+        } = row;
+        let what = if row.collapsed > COLLAPSED {
+            format!(
+                "{estimator} has fewer than 10 of its particles near the encoder's count in {:.0} % of the ticks",
+                100.0 * row.collapsed
+            )
+        } else if scenario.parse().is_ok_and(is_bound) && row.over_limit < BELOW {
+            format!(
+                "{estimator} is at {:.2} of the limit, so that the limit is wrong",
+                row.over_limit
+            )
+        } else {
+            continue;
+        };
+        lines.push(format!(
+            "note: {scenario} at {rate_hz} Hz: {what}: {particles} particles are too few; give more with --particles"
+        ));
+    }
+    lines
 }
 
 /// Noise of the particles in `scenario`.
@@ -114,11 +155,10 @@ fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<LimitRo
     let reference = rms(&difference.run(&trace));
     let noise = noise(case.scenario);
     let of = |edges| {
-        rms(&velocities(
-            &trace, &setup, &noise, edges, particles, case.seed,
-        ))
+        let found = filter(&trace, &setup, &noise, edges, particles, case.seed);
+        (rms(&found.velocities), found.collapsed)
     };
-    let (counts, edges) = (of(false), of(true));
+    let ((counts, counts_collapsed), (edges, edges_collapsed)) = (of(false), of(true));
     let row = |estimator, rms_rad_s: f64, limit: f64| LimitRow {
         estimator,
         scenario: case.scenario.as_str(),
@@ -127,10 +167,17 @@ fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<LimitRo
         rms_rad_s,
         rms_pct: 100.0 * rms_rad_s / reference,
         over_limit: rms_rad_s / limit,
+        collapsed: 0.0,
     };
     let mut rows = vec![
-        row("limit", counts, counts),
-        row("limit-edge", edges, edges),
+        LimitRow {
+            collapsed: counts_collapsed,
+            ..row("limit", counts, counts)
+        },
+        LimitRow {
+            collapsed: edges_collapsed,
+            ..row("limit-edge", edges, edges)
+        },
     ];
     for candidate in evaluation.candidates() {
         if let Some(estimate) = candidate.estimate(&trace) {

@@ -207,6 +207,7 @@ mod tests {
             rms_rad_s: 0.05,
             rms_pct: 5.0,
             over_limit: 1.0,
+            collapsed: 0.0,
         });
         let groups = groups(&report);
         let palette = Palette::new(&report);

@@ -6,12 +6,13 @@ use clap::Args;
 
 use catalogue::parameters::PlantKind;
 use experiments::compare::Case;
-use experiments::limit::{SCENARIOS, limit, table::table};
+use experiments::limit::{SCENARIOS, limit, table::table, too_few};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::DeviceFile;
 use scoring::score::Wanted;
 use terminal::failure::Failure;
+use terminal::output::note;
 
 use super::arguments::{ParameterOptions, distinct, scenarios};
 use super::compare::{longer_than_skipped, settings};
@@ -75,6 +76,9 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
         bar.inc(1);
     })?;
     bar.finish_and_clear();
+    for line in too_few(&rows, options.particles as usize) {
+        note(line);
+    }
     let json = rows::json(&rows)?;
     page::print(
         options.json.as_deref(),

@@ -39,3 +39,19 @@ fn percentage_without_a_reference_is_a_dash_with_a_note() {
     let rows = json(&folder.good(&format!("{run} --device rests.toml --json -")));
     assert!(rows.iter().all(|row| row["rms_pct"].is_null()));
 }
+
+#[test]
+fn limit_with_too_few_particles_has_a_note() {
+    let folder = Folder::new(HOST_SIM);
+    let run =
+        "limit --scenario stochastic --estimator observer-edge --seconds 1 --json - --particles";
+    let (_, errors) = folder.ends(0, &format!("{run} 20"));
+    for said in [
+        "limit-edge has fewer than 10 of its particles near the encoder's count in ",
+        "observer-edge is at 0.",
+        "of the limit, so that the limit is wrong: 20 particles are too few; give more with --particles",
+    ] {
+        assert!(errors.contains(said), "{errors}");
+    }
+    assert_eq!(folder.ends(0, &format!("{run} 2000")).1, "");
+}

@@ -118,16 +118,28 @@ impl Model {
     }
 }
 
-/// Velocity at each tick, rad/s: the mean of the particles. Deterministic in `seed`.
+/// Effective number of particles below which their mean is arbitrary.
+const FEWEST: f64 = 10.0;
+
+/// Result of the particle filter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filtered {
+    /// Velocity at each tick, rad/s: the mean of the particles.
+    pub velocities: Vec<f32>,
+    /// Share of the ticks with an effective number of particles below 10, 0 to 1.
+    pub collapsed: f64,
+}
+
+/// Runs the filter over a trace. Deterministic in `seed`.
 #[must_use]
-pub fn velocities(
+pub fn filter(
     trace: &Trace,
     setup: &Setup,
     noise: &Noise,
     edges: bool,
     particles: usize,
     seed: u64,
-) -> Vec<f32> {
+) -> Filtered {
     let model = Model::new(setup, noise);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x11_417);
     let rad_s = TAU * setup.rate.0 / f64::from(setup.stages.large.counts_per_rev);
@@ -141,6 +153,7 @@ pub fn velocities(
     let mut befores = vec![(0.0, 0.0); particles];
     let mut current = 0.0;
     let mut velocities = vec![0.0; trace.len()];
+    let mut collapsed = 0_usize;
     for k in 1..trace.len() {
         let command = trace.current.as_ref().map_or(0.0, |column| column[k - 1]);
         let missing = command - current;
@@ -174,6 +187,10 @@ pub fn velocities(
             *weight *= (-exponent).exp();
         }
         let mut total: f64 = weights.iter().sum();
+        let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+        // The effective number is NaN if no particle agrees with the count.
+        let has_enough = total * total >= FEWEST * squares && total >= 1e-200;
+        collapsed += usize::from(!has_enough);
         if total < 1e-200 {
             // No particle agrees with the count: restart with the velocity of the counts.
             for (i, (p, weight)) in cloud.iter_mut().zip(&mut weights).enumerate() {
@@ -205,7 +222,10 @@ pub fn velocities(
             weights.fill(1.0);
         }
     }
-    velocities
+    Filtered {
+        velocities,
+        collapsed: collapsed as f64 / trace.len().max(1) as f64,
+    }
 }
 
 /// Resampling: the same number of particles, drawn by their weights, with a small jitter.
@@ -320,7 +340,7 @@ mod tests {
             torque_noise: 6e-6,
             ..QUIET
         };
-        let found = velocities(&trace, &setup, &noise, false, 500, 1);
+        let found = filter(&trace, &setup, &noise, false, 500, 1).velocities;
         let squares = found.iter().zip(&truth).skip(20);
         let squares = squares.map(|(found, truth)| (f64::from(*found) - truth).powi(2));
         let rms = (squares.sum::<f64>() / f64::from(ticks - 20)).sqrt();

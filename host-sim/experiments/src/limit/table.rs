@@ -104,6 +104,7 @@ mod tests {
             rms_rad_s,
             rms_pct,
             over_limit,
+            collapsed: 0.0,
         };
         let note = "-: finite difference or the limit has no error in hold.\n";
         for (row, cell) in [
@@ -127,6 +128,7 @@ mod tests {
             rms_rad_s: 1.0,
             rms_pct,
             over_limit: rms_pct / 10.0,
+            collapsed: 0.0,
         };
         let text = table(&[row(1, 20.0), row(2, 40.0)], 80);
         assert!(text.contains("30.00 (3.00)\n"), "{text}");
@@ -142,6 +144,7 @@ mod tests {
             rms_rad_s: 1.0,
             rms_pct: 10.0,
             over_limit: 1.0,
+            collapsed: 0.0,
         };
         let note = "note: limit is no bound in step, track: ";
         let all = [row("stochastic"), row("step"), row("track"), row("step")];
