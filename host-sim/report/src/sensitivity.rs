@@ -7,7 +7,7 @@ use super::plot::{Axis, Plot};
 use super::text::rate;
 use catalogue::constant_error::Constant;
 use experiments::sensitivity::SensitivityRow;
-use experiments::sensitivity::table::{MOVING, names, rows_by_rate};
+use experiments::sensitivity::table::{MOVING, names, percentage, rows_by_rate};
 
 const TOP: f64 = 58.0;
 const PANEL: f64 = 230.0;
@@ -41,10 +41,11 @@ fn curve(rows: &[&SensitivityRow], name: &str, constant: Constant) -> Curve {
         if row.estimator != name || !shown || !MOVING.contains(&row.scenario) {
             continue;
         }
+        let Some(y) = percentage(row) else { continue };
         let x = 100.0 * row.error;
         match points.iter_mut().find(|point| point.0 == x) {
-            Some(point) => (point.1, point.2) = (point.1 + row.rms_pct, point.2 + 1.0),
-            None => points.push((x, row.rms_pct, 1.0)),
+            Some(point) => (point.1, point.2) = (point.1 + y, point.2 + 1.0),
+            None => points.push((x, y, 1.0)),
         }
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));

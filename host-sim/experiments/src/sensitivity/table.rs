@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::SensitivityRow;
 use crate::table::layout::{self, Column};
-use crate::table::no_percentage;
 use catalogue::constant_error::ConstantError;
+use terminal::wording::wrapped;
 
 /// Scenarios in which the motor moves. Rest and creep do not excite the parameters.
 pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall", "texture"];
@@ -16,7 +16,8 @@ pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall",
 /// Columns: correct constants over all scenarios and over the moving ones ([`MOVING`]); each
 /// constant with its largest error, over the moving scenarios; the largest of these; the share of
 /// samples outside the haptic interval in moving scenarios with correct constants and in the worst
-/// case.
+/// case. A run in which finite difference has no error is in no mean of percentages; notes name it, and say why
+/// there is no moving scenario.
 #[must_use]
 pub fn table(rows: &[SensitivityRow], width: usize) -> String {
     let mut text = String::new();
@@ -58,8 +59,33 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
         columns.push(column("outside", "worst, %", &|of| of.outside_worst));
         let names = names.iter().map(|name| (*name).to_owned());
         text += &layout::table(&Column::text("assumed:", "", names), &columns, width);
-        let resting = at_rate.iter().filter(|row| !has_reference(row));
-        text += &no_percentage(resting.map(|row| row.scenario), "finite difference");
+        text += &notes(at_rate);
+    }
+    text
+}
+
+/// The lines below the table of one rate.
+fn notes(rows: &[&SensitivityRow]) -> String {
+    let mut resting: Vec<&str> = Vec::new();
+    for row in rows.iter().filter(|row| percentage(row).is_none()) {
+        if !resting.contains(&row.scenario) {
+            resting.push(row.scenario);
+        }
+    }
+    let mut text = String::new();
+    if !resting.is_empty() {
+        let note = format!(
+            "Finite difference has no error in {}: not in the means of percentages.",
+            resting.join(", ")
+        );
+        text += &(wrapped(&note, 0) + "\n");
+    }
+    if !rows.iter().any(|row| MOVING.contains(&row.scenario)) {
+        let note = format!(
+            "-: all columns but the first are means over the scenarios {}, of which none is run.",
+            MOVING.join(", ")
+        );
+        text += &(wrapped(&note, 0) + "\n");
     }
     text
 }
@@ -83,8 +109,9 @@ impl Errors {
             .filter(|row| MOVING.contains(&row.scenario))
             .collect();
         let right = |rows: &[&SensitivityRow]| mean(rows, |row| row.constant.is_none(), percentage);
-        let outside =
-            |only: &dyn Fn(&SensitivityRow) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
+        let outside = |only: &dyn Fn(&SensitivityRow) -> bool| {
+            100.0 * mean(&moving, only, |row| Some(row.outside))
+        };
         let mut errors = Self {
             right: right(rows),
             moving: right(&moving),
@@ -107,18 +134,10 @@ impl Errors {
     }
 }
 
-/// Whether finite difference has an error in the run of a row.
-fn has_reference(row: &SensitivityRow) -> bool {
-    row.rms_pct.is_finite() || !row.rms_rad_s.is_finite()
-}
-
-/// The error in % of finite difference; NaN where that one has none.
-fn percentage(row: &SensitivityRow) -> f64 {
-    if has_reference(row) {
-        row.rms_pct
-    } else {
-        f64::NAN
-    }
+/// The error in % of finite difference; `None` where that one has none.
+#[must_use]
+pub fn percentage(row: &SensitivityRow) -> Option<f64> {
+    (row.rms_pct.is_finite() || !row.rms_rad_s.is_finite()).then_some(row.rms_pct)
 }
 
 fn number(value: f64) -> String {
@@ -129,15 +148,16 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Mean over the rows; NaN without a row.
+/// Mean over the rows that have a value; NaN without one.
 fn mean(
     rows: &[&SensitivityRow],
     only: impl Fn(&SensitivityRow) -> bool,
-    value: impl Fn(&SensitivityRow) -> f64,
+    value: impl Fn(&SensitivityRow) -> Option<f64>,
 ) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for row in rows.iter().filter(|row| only(row)) {
-        sum += value(row);
+    let values = rows.iter().filter(|row| only(row));
+    for value in values.filter_map(|row| value(row)) {
+        sum += value;
         count += 1.0;
     }
     sum / count
@@ -182,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn error_without_a_reference_is_a_dash_with_a_note() {
+    fn error_without_a_reference_is_in_no_mean_and_has_a_note() {
         let row = |scenario, rms_pct| SensitivityRow {
             estimator: "low-pass",
             scenario,
@@ -199,8 +219,31 @@ mod tests {
             panic!("{text}");
         };
         let cells: Vec<_> = line.split_whitespace().collect();
-        assert_eq!(cells[..3], ["low-pass", "-", "20.00"], "{text}");
-        assert_eq!(note, "-: finite difference has no error in hold.");
+        assert_eq!(cells[..3], ["low-pass", "20.00", "20.00"], "{text}");
+        assert_eq!(
+            note,
+            "Finite difference has no error in hold: not in the means of percentages."
+        );
+    }
+
+    #[test]
+    fn means_without_a_moving_scenario_have_a_note() {
+        let row = |scenario| SensitivityRow {
+            estimator: "pll",
+            scenario,
+            rate_hz: 1000.0,
+            seed: 1,
+            constant: None,
+            error: 0.0,
+            rms_rad_s: 1.0,
+            rms_pct: 20.0,
+            outside: 0.0,
+        };
+        let note = "-: all columns but the first are means over the scenarios step, permanent, track, \
+                    free-air, wall, texture, of which none is run. ";
+        let text = table(&[row("heating")], 1000).replace('\n', " ");
+        assert!(text.ends_with(note), "{text}");
+        assert!(!table(&[row("heating"), row("step")], 1000).contains("-:"));
     }
 
     #[test]
