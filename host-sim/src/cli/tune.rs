@@ -12,7 +12,7 @@ use experiments::tune::{
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use shards::{Experiment, Part};
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, print_bytes, write_whole};
+use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{check_rates, distinct, kinds, scenarios};
 use super::shard::{self, Outputs};
@@ -101,14 +101,20 @@ impl Tune {
 }
 
 pub(super) fn run(options: &Tune, run_line: &str) -> Result<(), Failure> {
-    let kinds: Vec<_> = kinds(&options.estimators)?
-        .into_iter()
-        .filter(|kind| kind.is_tunable())
-        .collect();
+    let named = kinds(&options.estimators)?;
+    let (kinds, fixed): (Vec<&Kind>, Vec<&Kind>) =
+        named.into_iter().partition(|kind| kind.is_tunable());
     if kinds.is_empty() {
         return Err(Failure::Input(
             "nothing to tune: the named estimators have no parameters; see host-sim estimators"
                 .to_owned(),
+        ));
+    }
+    if !options.estimators.is_empty() && !fixed.is_empty() {
+        let names: Vec<_> = fixed.iter().map(|kind| kind.name).collect();
+        note(format_args!(
+            "note: left out, without parameters to tune: {}",
+            names.join(", ")
         ));
     }
     let outputs = Outputs {
@@ -188,9 +194,9 @@ fn write(
     let file = file(outputs);
     let kept = kept_section(file)?;
     let mut text = format!("# {}\n{tuned_on}", outputs.command_line());
-    for note in notes {
-        terminal::output::note(format_args!("note: {note}"));
-        text += &format!("# {note}\n");
+    for line in notes {
+        note(format_args!("note: {line}"));
+        text += &format!("# {line}\n");
     }
     text += &format!("\n{}", presets.to_toml().map_err(Failure::Input)?);
     if !kept.is_empty() {
@@ -210,6 +216,7 @@ fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Fa
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
     let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
+    let are_counts_known = !notes.is_empty() || options.read.encoder.counts_per_rev.is_some();
     let parameters = Parameters::default();
     let mut recordings = Vec::new();
     for log in &logs {
@@ -226,8 +233,29 @@ fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Fa
         let sum = format!("{:016x}", log.sum()?);
         recordings.push((LogFile { name, sum }, recording));
     }
+    if !options.device.is_given() {
+        let counts = device.stages.large.counts_per_rev;
+        notes.extend(assumed(counts, are_counts_known, &kinds));
+    }
     let plan = LogPlan::new(recordings, device, &kinds, &parameters)?;
     Ok(plan.with_notes(notes))
+}
+
+/// What is assumed without a device file: the counts per revolution unless they are known, and the constants if one
+/// of `kinds` has a model with them.
+fn assumed(counts_per_rev: u32, are_counts_known: bool, kinds: &[&Kind]) -> Option<String> {
+    let has_model = |kind: &&Kind| kind.is_observer() || kind.needs.current || kind.needs.coupled;
+    let counts = format!("{counts_per_rev} counts/rev");
+    match (are_counts_known, kinds.iter().any(has_model)) {
+        (true, false) => None,
+        (false, false) => Some(format!(
+            "{counts} assumed: give --counts-per-rev or --device"
+        )),
+        (true, true) => Some("constants of the default device assumed: give --device".to_owned()),
+        (false, true) => Some(format!(
+            "{counts} and constants of the default device assumed: give --device"
+        )),
+    }
 }
 
 /// The errors on recordings as a table.

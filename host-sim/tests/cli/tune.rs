@@ -40,6 +40,18 @@ fn tuned_parameters_are_written_and_used() {
 }
 
 #[test]
+fn named_estimator_without_parameters_has_a_note() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "tune --rate 1000 --seconds 1 --seeds 1 --scenario step --shard 1/9 --estimator pll";
+    let (_, errors) = folder.ends(0, &format!("{run} --estimator imm"));
+    assert!(
+        errors.contains("left out, without parameters to tune: imm"),
+        "{errors}"
+    );
+    assert_eq!(folder.ends(0, run).1, "");
+}
+
+#[test]
 fn section_image_of_an_existing_file_stays_with_its_comments() {
     let folder = Folder::new(HOST_SIM);
     let shipped = include_str!("../../presets.toml");

@@ -103,6 +103,29 @@ fn found_parameters_are_better_in_the_held_out_seconds() {
 }
 
 #[test]
+fn assumed_encoder_and_constants_are_said() {
+    let folder = Folder::new(HOST_SIM);
+    let log = log(now_slow_now_fast).replace('\n', ",0\n");
+    folder.write("log.csv", log.replacen(",0\n", ",current\n", 1));
+    folder.write("mine.toml", "");
+    let notes = |more: &str| {
+        let command = format!("tune log.csv --shard 1/1 --out parts {more}");
+        folder.good(&command);
+        folder.text("parts/shard-1-of-1.jsonl")
+    };
+    let counts = "4096 counts/rev assumed: give --counts-per-rev or --device";
+    let pll = notes("--estimator pll");
+    assert!(pll.contains(counts), "{pll}");
+    let pll = notes("--estimator pll --counts-per-rev 4096");
+    assert!(!pll.contains("assumed"), "{pll}");
+    let pll = notes("--estimator pll --device mine.toml");
+    assert!(!pll.contains("assumed"), "{pll}");
+    let both = "4096 counts/rev and constants of the default device assumed: give --device";
+    let observer = notes("--estimator observer-held");
+    assert!(observer.contains(both), "{observer}");
+}
+
+#[test]
 fn errors_are_those_of_all_recordings_together() {
     let [folder, other] = [HOST_SIM; 2].map(Folder::new);
     folder.write("log.csv", log(now_slow_now_fast));
