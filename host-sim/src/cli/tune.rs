@@ -12,7 +12,7 @@ use experiments::tune::{
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use shards::{Experiment, Part};
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, note, print_bytes, write_whole};
+use terminal::output::{check_place, is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{check_rates, distinct, kinds, scenarios};
 use super::shard::{self, Outputs};
@@ -122,6 +122,10 @@ pub(super) fn run(options: &Tune, run_line: &str) -> Result<(), Failure> {
         out: options.out.as_deref(),
         json: None,
     };
+    // The default output too is refused before the search.
+    if options.shard.is_none() && !is_stdout(file(outputs)) {
+        check_place(file(outputs))?;
+    }
     match options.recordings.is_empty() {
         true => {
             options.read.check_unused("RECORDING")?;

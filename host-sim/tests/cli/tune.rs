@@ -40,6 +40,20 @@ fn tuned_parameters_are_written_and_used() {
 }
 
 #[test]
+fn default_output_without_a_place_is_refused_before_the_search() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("target", "");
+    folder.write("log.csv", "t,counts_large\n");
+    for recording in ["", "log.csv"] {
+        let error = folder.refused(&format!("tune {recording} --estimator observer"));
+        assert!(
+            error.contains("target/presets.toml: target is no folder"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn named_estimator_without_parameters_has_a_note() {
     let folder = Folder::new(HOST_SIM);
     let run = "tune --rate 1000 --seconds 1 --seeds 1 --scenario step --shard 1/9 --estimator pll";
