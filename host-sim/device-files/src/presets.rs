@@ -1,11 +1,13 @@
 //! Tuned parameters of the estimators, as `host-sim tune` writes them.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use estimator_catalogue::Parameter;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal;
+use crate::device::COUNTS_PER_REV;
 use crate::read::{Step, at_line, one_line};
 
 /// Whether the plant has Coulomb friction.
@@ -40,6 +42,9 @@ impl PlantKind {
 
 /// The motors of [`Presets::image`].
 const MOTORS: [&str; 2] = ["large", "handle"];
+
+/// Control rates of a preset, Hz: those of recordings, which `tune` runs on too, and faster ones.
+const RATES_HZ: RangeInclusive<f64> = 10.0..=10e6;
 
 /// Values by estimator and parameter.
 pub type Estimators = BTreeMap<String, BTreeMap<String, f64>>;
@@ -161,11 +166,21 @@ impl Presets {
                     error,
                 ))
             };
-            if !(preset.rate_hz > 0.0 && preset.rate_hz.is_finite()) {
-                return wrong("rate_hz", format!("rate_hz = {rate}: must be above 0 Hz"));
+            if !RATES_HZ.contains(&preset.rate_hz) {
+                let error = format!(
+                    "rate_hz = {rate}: must be from {} to {} Hz",
+                    RATES_HZ.start(),
+                    RATES_HZ.end()
+                );
+                return wrong("rate_hz", error);
             }
-            if preset.counts_per_rev == Some(0) {
-                let error = format!("counts_per_rev = 0 at rate_hz = {rate}: must be above 0");
+            let counts = preset.counts_per_rev;
+            if let Some(counts) = counts.filter(|counts| !COUNTS_PER_REV.contains(counts)) {
+                let error = format!(
+                    "counts_per_rev = {counts} at rate_hz = {rate}: must be from {} to {} counts per revolution",
+                    COUNTS_PER_REV.start(),
+                    COUNTS_PER_REV.end()
+                );
                 return wrong("counts_per_rev", error);
             }
             let same =

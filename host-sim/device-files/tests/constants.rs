@@ -127,11 +127,23 @@ fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
         ),
         (
             "[[preset]]\nrate_hz = 0\nplant = \"friction\"\nestimators = {}\n".into(),
-            &["line 2, rate_hz = 0: must be above 0 Hz"],
+            &["line 2, rate_hz = 0: must be from 10 to 10000000 Hz"],
+        ),
+        (
+            "[[preset]]\nrate_hz = inf\nplant = \"friction\"\nestimators = {}\n".into(),
+            &["line 2, rate_hz = inf: must be from 10 to 10000000 Hz"],
+        ),
+        (
+            "[[preset]]\nrate_hz = 1e-300\nplant = \"friction\"\nestimators = {}\n".into(),
+            &["line 2, rate_hz = 1e-300: must be from 10"],
+        ),
+        (
+            preset("counts_per_rev = 3\nestimators = {}"),
+            &["line 4, counts_per_rev = 3 at rate_hz = 1000: must be from 16 to 4000000 counts per revolution"],
         ),
         (
             "[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\ncounts_per_rev = 0\nestimators = {}\n".into(),
-            &["line 4, counts_per_rev = 0 at rate_hz = 1000: must be above 0"],
+            &["line 4, counts_per_rev = 0 at rate_hz = 1000: must be from 16"],
         ),
         (
             preset("[preset.estimators.pl]\nbandwidth_hz = 1"),
