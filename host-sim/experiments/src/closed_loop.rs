@@ -126,6 +126,7 @@ impl Loop {
         mut observe: impl FnMut(&TickState),
     ) -> Result<(), String> {
         self.device.validate()?;
+        self.hand.check(&self.device)?;
         let rate = Hertz(self.rate_hz);
         let mut rig = Rig::new(&self.assumed, rate, self.poles)
             .map_err(|error| format!("control at {} Hz: {error}", rate.0))?;

@@ -47,3 +47,19 @@ fn cause_without_which_no_device_is_left_is_left_out_with_a_note() {
     let (_, notes) = folder.ends(0, &format!("{run} --causes-only --json -"));
     assert_eq!(notes, "");
 }
+
+#[test]
+fn device_without_a_hand_is_refused() {
+    let folder = Folder::new(HOST_SIM);
+    let text = "[hand]\nstiffness_nm_per_rad = 0\ndamping_nms_per_rad = 0\n";
+    folder.write("gone.toml", text);
+    for command in [
+        "feel --causes-only --scene wall --estimator pll --seconds 1 --json -",
+        "compare --closed-loop --scene wall --estimator pll --seconds 1 --json -",
+        "zwidth --estimator pll --rate 1000 --json -",
+    ] {
+        let error = folder.refused(&format!("{command} --device gone.toml"));
+        let said = "hand.stiffness_nm_per_rad and hand.damping_nms_per_rad are both 0";
+        assert!(error.contains(said), "{error}");
+    }
+}

@@ -3,6 +3,7 @@
 use haptic_control::SimulatedHand;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
+use simulation::device::Device;
 use simulation::plant::{Grip, Pose};
 use simulation::scenario::{Intent, draw};
 
@@ -63,6 +64,24 @@ impl Motion {
 }
 
 impl Hand {
+    /// Checks that `device` has a hand, if this motion is one of a hand.
+    ///
+    /// # Errors
+    /// One line that names the keys of the hand.
+    pub(super) fn check(self, device: &Device) -> Result<(), String> {
+        let hand = device.hand;
+        let is_there = hand.stiffness_nm_per_rad > 0.0 || hand.damping_nms_per_rad > 0.0;
+        match self {
+            Self::Gone(_) | Self::Clamp => Ok(()),
+            _ if is_there => Ok(()),
+            _ => Err(
+                "hand.stiffness_nm_per_rad and hand.damping_nms_per_rad are both 0: no hand moves or holds the \
+                 handle in the closed loop; give one of them"
+                    .to_owned(),
+            ),
+        }
+    }
+
     fn intent(self, period_s: f64, seed: u64) -> Option<Intent> {
         let random = &mut Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x4A4D);
         let about = |random: &mut _, low, high| Intent::about(draw(random, low, high), period_s);
