@@ -10,6 +10,7 @@ use catalogue::parameters::Parameters;
 use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::designed::{Place, designed};
 use recordings::arguments::DeviceFile;
+use recordings::log::is_stdin;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
@@ -233,6 +234,16 @@ pub(super) fn scenarios(
 /// Help text of a `--rate` of closed loops, with the range.
 pub(super) fn loop_rate_help() -> String {
     format!("Control rate, {LOWEST_RATE_HZ} to {} Hz", RATES_HZ.1)
+}
+
+/// Checks that standard input is among these recordings once at most. `name` is that of the argument.
+pub(super) fn one_stdin(name: &str, recordings: &[PathBuf]) -> Result<(), Failure> {
+    match recordings.iter().filter(|path| is_stdin(path)).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Failure::Input(format!(
+            "{name} -: standard input can be read once; give - once"
+        ))),
+    }
 }
 
 /// The given values without duplicates; `default` if none is given.

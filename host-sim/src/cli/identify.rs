@@ -11,6 +11,7 @@ use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
+use super::arguments::one_stdin;
 use super::page;
 use recordings::log::{Log, short_name};
 
@@ -48,14 +49,36 @@ pub(super) struct Identify {
     json: Option<PathBuf>,
 }
 
+/// Refuses a recording that is there twice: it says nothing new, and would make the intervals smaller.
+fn refuse_twice(logs: &[Log]) -> Result<(), Failure> {
+    if logs.len() < 2 {
+        return Ok(());
+    }
+    let mut sums: Vec<u64> = Vec::new();
+    for log in logs {
+        let sum = log.sum()?;
+        if let Some(k) = sums.iter().position(|known| *known == sum) {
+            return Err(Failure::Input(format!(
+                "{}: is already given by {}; give each recording once",
+                log.name(),
+                logs[k].name()
+            )));
+        }
+        sums.push(sum);
+    }
+    Ok(())
+}
+
 pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure> {
     page::one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
     if let Some(folder) = &options.report {
         Folder::check("--report", folder)?;
     }
+    one_stdin("RECORDING", &options.recordings)?;
     let loaded = options.device.loaded()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    refuse_twice(&logs)?;
     let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
     let known = match &options.known {

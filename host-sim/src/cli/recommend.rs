@@ -15,10 +15,10 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note};
 use terminal::wording::wrapped;
 
-use super::arguments::ParameterOptions;
+use super::arguments::{ParameterOptions, one_stdin};
 use super::page::{self, progress};
 use experiments::uneven::{Chosen, Recorded};
-use recordings::log::{Log, is_stdin, short_name};
+use recordings::log::{Log, short_name};
 
 /// Default budget of the cheap estimator, instructions per update.
 const BUDGET: f64 = 100.0;
@@ -61,10 +61,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
             options.instructions
         )));
     }
-    if options.logs.iter().filter(|path| is_stdin(path)).count() > 1 {
-        let what = "LOG -: standard input can be read once; give - once";
-        return Err(Failure::Input(what.to_owned()));
-    }
+    one_stdin("LOG", &options.logs)?;
     let loaded = options.device.loaded()?;
     let parameters = options.parameters.load()?;
     let logs = options.logs.iter().map(|path| Log::open(path));

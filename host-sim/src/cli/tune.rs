@@ -14,7 +14,7 @@ use shards::{Experiment, Part};
 use terminal::failure::Failure;
 use terminal::output::{check_place, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::{check_rates, distinct, kinds, scenarios};
+use super::arguments::{check_rates, distinct, kinds, one_stdin, scenarios};
 use super::shard::{self, Outputs};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
@@ -215,6 +215,7 @@ fn write(
 
 /// The searches on recordings.
 fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Failure> {
+    one_stdin("RECORDING", &options.recordings)?;
     let loaded = options.device.loaded()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;

@@ -152,6 +152,14 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
             "nothing.csv: cannot read",
         ),
         ("simulate --scene none --out new.toml", "no scene"),
+        (
+            "identify excite.csv ./excite.csv",
+            "./excite.csv: is already given by excite.csv; give each recording once",
+        ),
+        (
+            "identify - -",
+            "RECORDING -: standard input can be read once",
+        ),
     ] {
         let errors = folder.refused(&words(arguments));
         assert!(errors.contains(said), "{errors}");
