@@ -82,7 +82,11 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
     let known = match &options.known {
-        Some(text) => Known::parse(text)?,
+        Some(text) => {
+            let known = Known::parse(text)?;
+            known.check(&device)?;
+            known
+        }
         None => Known::TorqueConstant(device.stages.large.torque_constant),
     };
     let (mut recordings, mut current_options) = (Vec::new(), Vec::new());

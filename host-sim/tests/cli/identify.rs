@@ -148,6 +148,10 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
             "above 0",
         ),
         (
+            "identify excite.csv --known large.inertia_kg_m2=30",
+            "--known large.inertia_kg_m2 = 30: must be at most 0.1 kg.m2",
+        ),
+        (
             "identify nothing.csv --out new.toml",
             "nothing.csv: cannot read",
         ),

@@ -39,7 +39,14 @@ pub fn updated(
         put(&mut document, quantity.key, rounded(value), &comment)?;
     }
     let text = document.to_string();
-    Device::from_toml_str(&text)?;
+    Device::from_toml_str(&text).map_err(|error| {
+        // The file with this line is not written.
+        let error = match error.split_once(", ") {
+            Some((line, error)) if line.starts_with("line ") => error,
+            _ => &error,
+        };
+        format!("the identified values are no device: {error}")
+    })?;
     Ok(text)
 }
 

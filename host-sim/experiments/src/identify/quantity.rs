@@ -50,6 +50,27 @@ impl Known {
         }
     }
 
+    /// Checks the range of the value on `device`, whose own values are in range.
+    ///
+    /// # Errors
+    /// One line with the key and the range.
+    pub fn check(self, device: &Device) -> Result<(), String> {
+        let mut device = device.clone();
+        let (key, value) = self.entry();
+        match self {
+            Self::TorqueConstant(_) => device.stages.large.torque_constant = value,
+            Self::Inertia(_) => device.stages.large.inertia = value,
+            Self::Damping(_) => device.stages.damping = value,
+        }
+        match device.validate() {
+            // The other constants are identified.
+            Err(error) if error.starts_with(key) && !error.contains(": too small") => {
+                Err(format!("--known {error}"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Inertia of the large motor from `[Kt/J, b/J, friction/J]`.
     pub(super) fn inertia(self, ratios: &[f64]) -> f64 {
         match self {
