@@ -16,8 +16,7 @@ use terminal::failure::Failure;
 /// [`Failure::Input`] that names the file and the wrong entry.
 pub fn read(path: &Path) -> Result<Presets, Failure> {
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
+    let text = device_files::utf8(path).map_err(Failure::Input)?;
     checked(&text, &name).map_err(Failure::Input)
 }
 

@@ -8,7 +8,7 @@ pub mod device;
 pub mod presets;
 mod read;
 
-pub use read::text;
+pub use read::{text, utf8};
 
 /// A number with as few digits as necessary, with an exponent instead of many zeros.
 #[must_use]

@@ -1,5 +1,6 @@
 //! Text of an input file, and errors in it.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
@@ -15,7 +16,29 @@ pub fn text(path: &Path) -> Result<String, String> {
     if !metadata.is_file() {
         return Err(named(&"not a regular file; give a TOML file"));
     }
-    std::fs::read_to_string(path).map_err(unread)
+    utf8(path)
+}
+
+/// The text of a file or of a pipe.
+///
+/// # Errors
+/// One line that names the path, if it cannot be read, or if it is no UTF-8 text.
+pub fn utf8(path: &Path) -> Result<String, String> {
+    let named = |what: &dyn std::fmt::Display| format!("{}: {what}", path.display());
+    let bytes =
+        std::fs::read(path).map_err(|error| named(&format_args!("cannot read: {error}")))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let (valid, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
+        // The mark at the start of UTF-16, in both orders of the bytes.
+        if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
+            return named(
+                &"is UTF-16, as > of Windows PowerShell writes it; save the file as UTF-8, for example with \
+                  Set-Content -Encoding utf8",
+            );
+        }
+        let line = 1 + bytes[..valid].iter().filter(|&&byte| byte == b'\n').count();
+        named(&format_args!("line {line}: is not UTF-8 text; save the file as UTF-8"))
+    })
 }
 
 /// A step on the way to a value of a TOML text.
@@ -59,6 +82,30 @@ fn line_at(text: &str, byte: usize) -> usize {
     1 + before.iter().filter(|&&byte| byte == b'\n').count()
 }
 
+/// Most characters of a key or a value that a message repeats.
+const LONGEST: usize = 40;
+
+/// The first characters of `text`, if it is too long for a message.
+fn shortened(text: &str) -> Cow<'_, str> {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}...", &text[..end]).into(),
+        None => text.into(),
+    }
+}
+
+/// `text` with each name in it between quotes shortened.
+fn shortened_quotes(text: &str) -> String {
+    let parts = text.split_inclusive(['`', '"']);
+    let parts = parts.enumerate().map(|(k, part)| {
+        let inside = part.trim_end_matches(['`', '"']);
+        match k % 2 {
+            1 => format!("{}{}", shortened(inside), &part[inside.len()..]),
+            _ => part.to_owned(),
+        }
+    });
+    parts.collect()
+}
+
 /// The parser's error in one line, with the line's number and its key.
 pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
     let what = error
@@ -70,12 +117,13 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
             "expected u32",
             "expected a whole number from 0, without a decimal point",
         );
+    let what = shortened_quotes(&what);
     let Some(span) = error.span() else {
         return what;
     };
     let number = line_at(text, span.start);
     let line = text.lines().nth(number - 1).unwrap_or("");
-    let key = line.split(['=', '#']).next().unwrap_or("").trim();
+    let key = shortened(line.split(['=', '#']).next().unwrap_or("").trim());
     if key.is_empty() {
         return format!("line {number}: {what}");
     }

@@ -110,6 +110,44 @@ fn errors_of_a_device_file_name_line_or_key_and_remedy() {
 }
 
 #[test]
+fn file_of_another_encoding_is_refused_with_the_remedy() {
+    let toml = "[hand] # n\u{e4}h\n";
+    let utf16: Vec<u8> = (toml.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    let latin1: Vec<u8> = toml.chars().map(|c| c as u8).collect();
+    for (bytes, said) in [
+        (
+            [&[0xFF, 0xFE], &utf16[..]].concat(),
+            ": is UTF-16, as > of Windows PowerShell writes it; save the file as UTF-8",
+        ),
+        ([b"\n", &latin1[..]].concat(), ": line 2: is not UTF-8 text"),
+    ] {
+        let path = file("encoding.toml", "");
+        fs::write(&path, bytes).unwrap();
+        assert_line(&constants(Some(&path), None).unwrap_err(), &[said]);
+        assert_line(&constants(None, Some(&path)).unwrap_err(), &[said]);
+    }
+    // The mark at the start of UTF-8 is no error.
+    assert!(constants(Some(&file("encoding.toml", "\u{feff}[hand]\n")), None).is_ok());
+}
+
+#[test]
+fn long_keys_and_values_are_shortened_in_errors() {
+    let long = "x".repeat(10_000);
+    for text in [
+        format!("{long} = 1\n"),
+        format!("[hand]\n{long} = 1\n"),
+        format!("[hand]\nstiffness_nm_per_rad = \"{long}\"\n"),
+        format!("[{long}\n"),
+        long.clone(),
+    ] {
+        let error = constants(Some(&file("long.toml", &text)), None).unwrap_err();
+        assert_line(&error, &["line "]);
+        let repeated = error.split(|c| c != 'x').map(str::len).max();
+        assert!(error.len() < 600 && repeated <= Some(40), "{error}");
+    }
+}
+
+#[test]
 fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
     let preset = |more: &str| format!("[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\n{more}\n");
     for (text, parts) in [
