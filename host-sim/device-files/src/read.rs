@@ -5,6 +5,8 @@ use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
+use crate::device::COUNTS_PER_REV;
+
 /// The text of a regular file.
 ///
 /// # Errors
@@ -113,9 +115,14 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
         .trim()
         .replace('\n', ", ")
         .replace("expected f64", "expected a number")
+        // Counts per revolution are the only whole numbers.
         .replace(
             "expected u32",
-            "expected a whole number from 0, without a decimal point",
+            &format!(
+                "expected a whole number from {} to {}, without a decimal point",
+                COUNTS_PER_REV.start(),
+                COUNTS_PER_REV.end()
+            ),
         );
     let what = shortened_quotes(&what);
     let Some(span) = error.span() else {

@@ -157,7 +157,11 @@ fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
         ),
         (
             preset("counts_per_rev = -1"),
-            &["line 4, counts_per_rev: ", "expected a whole number from 0"],
+            &["line 4, counts_per_rev: ", "expected a whole number from 16 to 4000000"],
+        ),
+        (
+            preset("counts_per_rev = 99999999999"),
+            &["line 4, counts_per_rev: ", "expected a whole number from 16 to 4000000"],
         ),
         (
             preset("[preset.estimators.pll]\nbandwidth_hz = \"1\""),
