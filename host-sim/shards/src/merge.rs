@@ -1,6 +1,6 @@
 //! The files of all parts of one run.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
@@ -27,7 +27,7 @@ impl Shards {
     pub fn read(paths: &[PathBuf], version: &str) -> Result<Self, Failure> {
         let mut files: Vec<File> = Vec::new();
         for path in paths {
-            let file = File::read(path)?;
+            let file = File::read(path).map_err(|error| empty(path, paths).unwrap_or(error))?;
             let said = match files.first() {
                 Some(first) => file.differs_from(first),
                 None if file.heading.version != version => Some(format!(
@@ -156,6 +156,27 @@ impl File {
         };
         Some(format!("{other}; merge shards of one run"))
     }
+}
+
+/// The error of an empty file, as a run leaves it that was ended: another one of `paths` has the command that
+/// writes it. `None` for a file that is not empty.
+fn empty(path: &Path, paths: &[PathBuf]) -> Option<Failure> {
+    let metadata = std::fs::metadata(path).ok()?;
+    if !metadata.is_file() || metadata.len() > 0 {
+        return None;
+    }
+    let other = paths.iter().find_map(|other| File::read(other).ok());
+    let part = path.file_name().and_then(Part::named);
+    let again = match (other, part) {
+        (Some(other), Some(part)) if part.n == other.heading.part.n => {
+            other.heading.again(part, path)
+        }
+        _ => "run the command with its --shard again".to_owned(),
+    };
+    Some(Failure::Input(format!(
+        "{}: is empty; {again}",
+        path.display()
+    )))
 }
 
 /// The first difference between two settings, in words.

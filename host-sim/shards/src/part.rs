@@ -1,5 +1,6 @@
 //! Part K of N of the jobs of an experiment.
 
+use std::ffi::OsStr;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -37,6 +38,13 @@ impl Part {
     #[must_use]
     pub fn file_name(self) -> PathBuf {
         format!("shard-{}-of-{}.jsonl", self.k, self.n).into()
+    }
+
+    /// The part whose file has this name.
+    pub(crate) fn named(file: &OsStr) -> Option<Self> {
+        let numbers = file.to_str()?.strip_prefix("shard-")?;
+        let (k, n) = numbers.strip_suffix(".jsonl")?.split_once("-of-")?;
+        format!("{k}/{n}").parse().ok()
     }
 
     /// Whether both numbers are in range, as those of a parsed part are.

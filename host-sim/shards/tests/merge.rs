@@ -78,6 +78,26 @@ fn written(run: Run<'_>, numbers: usize, jobs: usize, n: usize) -> (TempDir, Vec
 }
 
 #[test]
+fn empty_file_is_reported_with_the_command_that_writes_it() {
+    let (folder, paths) = written(RUN, 11, 11, 3);
+    fs::write(&paths[0], "").unwrap();
+    let error = Shards::read(&paths, "1").unwrap_err().to_string();
+    let command = format!(
+        "shard-1-of-3.jsonl: is empty; run squares --all --shard 1/3 --out {}",
+        folder.path().display()
+    );
+    assert!(error.ends_with(&command), "{error}");
+    // Another name does not tell the part, and no file the command.
+    let other = folder.path().join("part.jsonl");
+    fs::write(&other, "").unwrap();
+    for paths in [vec![other, paths[1].clone()], vec![paths[0].clone()]] {
+        let error = Shards::read(&paths, "1").unwrap_err().to_string();
+        let said = "is empty; run the command with its --shard again";
+        assert!(error.ends_with(said), "{error}");
+    }
+}
+
+#[test]
 fn rows_have_the_order_of_the_jobs() {
     for n in [1, 2, 5, 11, 12] {
         let (_folder, mut paths) = written(RUN, 11, 11, n);

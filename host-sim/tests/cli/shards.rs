@@ -237,7 +237,11 @@ fn shards_that_are_no_run_are_refused_by_name() {
         fs::remove_file(folder.path().join(name)).unwrap();
     };
     let changed = "changed after it was written: the checksum is ";
-    with("empty.jsonl", "", "line 1: not a shard");
+    with(
+        "empty.jsonl",
+        "",
+        "is empty; run the command with its --shard again",
+    );
     with("heading.jsonl", &text[..100], "line 1: not a shard");
     with(
         "lines.jsonl",
