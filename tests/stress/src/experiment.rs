@@ -144,12 +144,23 @@ impl Experiment for Settings {
             seed: self.seed,
             ticks: self.ticks,
         };
-        let all = 0..self.tested()?.len();
+        let tested = self.tested()?;
+        let all = 0..tested.len();
         let courses = all
             .clone()
             .flat_map(|at| plan.parts().map(move |part| Job::Course(at, part)));
-        let kinds = designs::kinds().into_iter().map(Job::Limits);
-        Ok(courses.chain(all.map(Job::Signals)).chain(kinds).collect())
+        // A window in the name of a tested estimator follows that of its kind.
+        let begin = self.estimator.as_deref().unwrap_or_default();
+        let is_tested = |kind: &str| {
+            let mut kinds = tested.iter().filter_map(|one| one.name.split(' ').next());
+            kind.starts_with(begin) || kinds.any(|tested| tested == kind)
+        };
+        let kinds = designs::kinds().into_iter().filter(|kind| is_tested(kind));
+        let signals = all.map(Job::Signals);
+        Ok(courses
+            .chain(signals)
+            .chain(kinds.map(Job::Limits))
+            .collect())
     }
 
     fn rows(&self, jobs: &[Job], done: &(dyn Fn() + Sync)) -> Result<Vec<Row>, Failure> {

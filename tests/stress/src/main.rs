@@ -183,7 +183,12 @@ fn finish(arguments: &Arguments, settings: &Settings, rows: Vec<Row>) -> Result<
     };
     let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
     if !to_stdout {
-        print_bytes(format!("{found}\n{signals}\n{ends}").as_bytes())?;
+        // An estimator without parameters has no limits of them.
+        let ends = match results.limits.is_empty() {
+            true => String::new(),
+            false => format!("\n{ends}"),
+        };
+        print_bytes(format!("{found}\n{signals}{ends}").as_bytes())?;
     }
     if measured::update() {
         for (table, rows) in &tables {

@@ -43,6 +43,22 @@ fn merged_shards_equal_a_single_run() {
 }
 
 #[test]
+fn tables_have_the_named_estimators_alone() {
+    let folder = Folder::new(STRESS);
+    for (name, tables) in [("foaw-end-fit n 15", 3), ("finite-difference", 2)] {
+        let arguments = ["--ticks", "1000", "--rate", "1000", "--estimator", name];
+        let text = folder.good(&arguments);
+        let kind = name.split(' ').next().unwrap();
+        let blocks: Vec<_> = text.split("\n\n").collect();
+        assert_eq!(blocks.len(), tables, "{text}");
+        for other in ["pll", "kalman", "observer"] {
+            assert!(!text.contains(other), "{text}");
+        }
+        assert!(blocks.iter().all(|block| block.contains(kind)), "{text}");
+    }
+}
+
+#[test]
 fn lost_shards_are_named_with_the_command_that_runs_them() {
     let folder = Folder::new(STRESS);
     folder.good(&format!("{SHORT} --shard 2/3 --out parts"));
