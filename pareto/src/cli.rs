@@ -2,8 +2,10 @@
 
 use std::ffi::OsString;
 use std::path::Path;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
 use measured::Table;
 use measured::tables::{CONTROL, EVIDENCE_COST, PARETO};
 use terminal::failure::Failure;
@@ -11,6 +13,9 @@ use terminal::output::{print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
 use crate::{control, measure, peer_tuning, plot, table};
+
+/// Period at which the spinner turns.
+const TURN: Duration = Duration::from_millis(200);
 
 /// Measures the run time and the error of every estimator on the emulated board, and the run time of
 /// the control task in every scene.
@@ -47,13 +52,30 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     };
     match arguments.command {
         None => everything(),
-        Some(Command::TunePeers) => print_bytes(peer_tuning::report()?.as_bytes()),
+        Some(Command::TunePeers) => {
+            let report = busy("tuning", peer_tuning::report)?;
+            print_bytes(report.as_bytes())
+        }
     }
 }
 
+/// Does `work` with a sign of life and the time that has passed on standard error, if that is a terminal.
+fn busy<T>(doing: &'static str, work: impl FnOnce() -> T) -> T {
+    let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
+    let bar = ProgressBar::new_spinner()
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
+        .with_message(doing);
+    bar.enable_steady_tick(TURN);
+    let done = work();
+    bar.finish_and_clear();
+    done
+}
+
 fn everything() -> Result<(), Failure> {
-    let (mut rows, comparators) = measure::split(measure::measure().map_err(Failure::Check)?);
-    let tasks = control::measure().map_err(Failure::Check)?;
+    let found = busy("measuring estimators", measure::measure);
+    let (mut rows, comparators) = measure::split(found.map_err(Failure::Check)?);
+    let tasks = busy("measuring the control task", control::measure);
+    let tasks = tasks.map_err(Failure::Check)?;
     control::rate(&mut rows, &tasks);
     let estimators = Report {
         name: "pareto",
