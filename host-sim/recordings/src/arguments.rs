@@ -282,8 +282,7 @@ impl DeviceFile {
         let Some(path) = &self.device else {
             return Ok(String::new());
         };
-        std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{}: cannot read: {error}", path.display())))
+        device_files::utf8(path).map_err(Failure::Input)
     }
 
     /// The device of the file; the default device if no file is given.

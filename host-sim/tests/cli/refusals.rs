@@ -7,6 +7,9 @@ fn invalid_arguments_are_refused_with_a_remedy() {
     let folder = Folder::new(HOST_SIM);
     folder.write("device.toml", "[large]\ninertia = 1\n");
     folder.write("negative.toml", "[large]\ninertia_kg_m2 = -1\n");
+    let wide: Vec<u8> = "[large]\n".bytes().flat_map(|byte| [byte, 0]).collect();
+    folder.write("wide.toml", [&[0xFF, 0xFE][..], &wide].concat());
+    folder.write("latin.toml", b"# 5 \xB5s\n[large]\n");
     folder.write("file", "");
     for (arguments, said) in [
         (&["compare", "--scenario", "stp"][..], "step"),
@@ -76,6 +79,14 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         (
             &["compare", "--device", "none.toml"],
             "none.toml: cannot read",
+        ),
+        (
+            &["compare", "--device", "wide.toml"],
+            "wide.toml: is UTF-16, as > of Windows PowerShell writes it; save the file as UTF-8",
+        ),
+        (
+            &["compare", "--device", "latin.toml"],
+            "latin.toml: line 1: is not UTF-8 text; save the file as UTF-8",
         ),
         (&["compare", "--device", "device.toml"], "inertia"),
         (
