@@ -85,8 +85,8 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            last member; R within 1e-5 and 1e4 counts²:
 ///            R = 0.85 R where s² > V / 2 and s is at least the ninth of one sign in a row; else
 ///            R = R + a R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s s' within ±V
-///            a = 0.03, but 0.0009 where the count stays and s² < V / 2. Of s s' < 0 after one that was not, at
-///            most 1/4 count², times 0.03; and 0 unless this count and the one before are new
+///            a = 0.03, but 0.0009 where the count stays and s² < V / 2. s s' < 0 after one that was not is 0, or
+///            at least -1/4 count² where the count turned back by one
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
 /// ```
 /// A density that fills the interval is uniform, and its ends are √3 deviations from its mean. The tails of
@@ -298,6 +298,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
         state.anchor = sample.count;
         let edge = self.stamps.fresh_within(sample, over.edges_within);
         let moved = state.still == 0;
+        let turns = state.turns(displacement);
         if displacement.0 != 0 || edge.is_some() {
             state.still = 0;
         } else if state.resting {
@@ -320,7 +321,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
                 }
                 state.correct_by_edge(&edge, ends, moved)
             }
-            _ => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS || !stamped, moved),
+            _ => state.correct_by_interval(ends, S::LEARNS_FROM_COUNTS || !stamped, turns),
         };
         let likelihood = state.weigh(&judged, over.change, S::NOISE);
         if state.still >= self.rest {

@@ -8,7 +8,7 @@ use super::member::{Innovation, Member};
 use crate::branch::unlikely;
 use crate::edge_clock::FreshEdge;
 use crate::interval::smaller;
-use crate::units::Count;
+use crate::units::{Count, Counts};
 pub(super) use noise::LEAST_OF_COUNT;
 
 /// State of a [`ModelBank`](crate::ModelBank).
@@ -30,6 +30,8 @@ pub struct ModelBankState<const K: usize> {
     innovation: f32,
     /// How many in a row had the sign of the one before; below 0, how many the opposite one.
     signs: i8,
+    /// Change of the count in the tick before if it was one of a single count, else 0.
+    heading: i8,
 }
 
 /// A member with less weight is reset.
@@ -86,6 +88,7 @@ impl<const K: usize> ModelBankState<K> {
             noise,
             innovation: 0.0,
             signs: 0,
+            heading: 0,
         }
     }
 
@@ -185,6 +188,20 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
+    /// Takes the change of the count, and returns whether the count turned back: by one, as it came in the tick
+    /// before.
+    #[inline(always)]
+    pub(super) const fn turns(&mut self, displacement: Counts) -> bool {
+        let heading = if displacement.0.unsigned_abs() == 1 {
+            displacement.0 as i8
+        } else {
+            0
+        };
+        let turns = heading * self.heading < 0;
+        self.heading = heading;
+        turns
+    }
+
     /// Corrects all members by the quantisation interval of the count, whose ends have truncated `ends` before,
     /// and R by the shifts if `learns`.
     #[inline(always)]
@@ -192,7 +209,7 @@ impl<const K: usize> ModelBankState<K> {
         &mut self,
         ends: &Ends,
         learns: bool,
-        moved: bool,
+        turns: bool,
     ) -> Judged<K> {
         let expected = self.members[K - 1].position;
         let mut likelihoods = [Likelihood::default(); K];
@@ -204,7 +221,7 @@ impl<const K: usize> ModelBankState<K> {
             variance = correction.variance;
         }
         if learns {
-            self.learn_noise_of_counts(shift, variance, moved);
+            self.learn_noise_of_counts(shift, variance, turns);
         }
         Judged {
             likelihoods,
@@ -342,6 +359,7 @@ impl ModelBankState<3> {
             noise: self.noise,
             innovation: self.innovation,
             signs: self.signs,
+            heading: self.heading,
         }
     }
 }

@@ -87,20 +87,20 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
     }
 }
 
-/// Three shifts of alternating signs are noise, two are less of it if both counts are new ones and else none, and
-/// those of one sign are a motion that the members lag. R also follows the size of the shifts.
+/// Three shifts of alternating signs are noise, two are less of it if the count turns and else none, and those of one
+/// sign are a motion that the members lag. R also follows the size of the shifts.
 #[test]
 fn noise_of_a_count_grows_where_shifts_alternate() {
-    // Of counts that are new ones, or stay.
-    let among = |positions: &[f32], learns: bool, is_new: bool| {
+    // Of counts that turn, or stay.
+    let among = |positions: &[f32], learns: bool, turns: bool| {
         let mut state = ModelBankState::<3>::start(Count(0), 0.01);
-        state.still = u32::from(!is_new);
+        state.still = u32::from(!turns);
         for position in positions {
             for member in &mut state.members {
                 *member = Member::START;
                 member.position = *position;
             }
-            state.correct_by_interval(Ends::of(true), learns, is_new);
+            state.correct_by_interval(Ends::of(true), learns, turns);
         }
         state.noise
     };
@@ -110,7 +110,7 @@ fn noise_of_a_count_grows_where_shifts_alternate() {
     let near = |found: f32, expected: f32| {
         assert!((found - 0.01 - expected).abs() < 1e-4, "{found} {expected}");
     };
-    let by_turn = 0.03 * 0.25;
+    let by_turn = 0.02 * 0.25;
     near(after(&[2.0]), by_size);
     near(after(&[2.0, -2.0]), 2.0 * by_size + by_turn);
     near(among(&[2.0, -2.0], true, false), 2.0 * by_size);

@@ -23,9 +23,8 @@ const GAIN_OF_SIZE: f32 = 0.03;
 const USUAL: f32 = 0.5;
 const LARGEST: f32 = 1.5;
 
-/// Change of R in the product where a count turns back in the next tick, and the largest product there, counts².
-const GAIN_OF_TURN: f32 = 0.03;
-const LARGEST_TURN: f32 = 0.25;
+/// Largest product of two shifts where the count turned back by one, counts².
+const LARGEST_OF_TURN: f32 = 0.25;
 
 /// Part of a decrease of R that a count has which stays: it says little of the noise.
 const STAYING: f32 = 0.03;
@@ -80,11 +79,11 @@ impl<const K: usize> ModelBankState<K> {
         self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
     }
 
-    /// Changes R by the `shift` of a position whose variance with its noise is `variance`. `moved` if the count
-    /// before was a new one. A count that turns back at once is noise too, but less than a count of it may do so
-    /// once in a while: a product below 0 then counts although the one before was none.
+    /// Changes R by the `shift` of a position whose variance with its noise is `variance`. A noise of less than half
+    /// a count seldom makes three shifts alternate, but it makes the count turn back: two shifts suffice if it
+    /// `turns`.
     #[inline(always)]
-    pub(super) fn learn_noise_of_counts(&mut self, shift: f32, variance: f32, moved: bool) {
+    pub(super) fn learn_noise_of_counts(&mut self, shift: f32, variance: f32, turns: bool) {
         let is_new = self.still == 0;
         let (product, alternated) = self.product(shift);
         let size = smaller(shift * shift / variance, LARGEST) - USUAL;
@@ -95,14 +94,14 @@ impl<const K: usize> ModelBankState<K> {
                 true => GAIN_OF_SIZE * STAYING,
                 false => GAIN_OF_SIZE,
             };
-            let grown = if product >= 0.0 || alternated {
-                GAIN_OF_PRODUCT * limited(product, variance)
-            } else if is_new && moved {
-                GAIN_OF_TURN * limited(product, LARGEST_TURN)
+            let product = if product >= 0.0 || alternated {
+                limited(product, variance)
+            } else if turns {
+                limited(product, LARGEST_OF_TURN)
             } else {
                 0.0
             };
-            self.noise + gain * size * self.noise - grown
+            self.noise + gain * size * self.noise - GAIN_OF_PRODUCT * product
         };
         // Both ends are constants: the panic of `clamp` is removed.
         self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);

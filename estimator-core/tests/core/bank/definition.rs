@@ -26,6 +26,9 @@ pub(super) struct Definition {
     /// How many innovations in a row had the sign of the one before, and how many the opposite one.
     same: u32,
     opposite: u32,
+    /// The change of the count in the tick before, and whether it turned back by one in this tick.
+    change: f64,
+    turned: bool,
     /// Time without a change, periods.
     still: f64,
 }
@@ -137,12 +140,17 @@ impl Definition {
             innovation: 0.0,
             same: 0,
             opposite: 0,
+            change: 0.0,
+            turned: false,
             still: 0.0,
         };
         let mut velocities = vec![0.0];
         for tick in 1..counts.len() {
             let edge = edges.and_then(|edges| edges[tick]);
-            let changed = counts[tick] != counts[tick - 1];
+            let change = counts[tick] - counts[tick - 1];
+            let changed = change != 0.0;
+            bank.turned = change.abs() == 1.0 && bank.change == -change;
+            bank.change = change;
             velocities.push(bank.update(counts[tick], changed, edge, intervals[tick]) / rate);
         }
         velocities
@@ -226,7 +234,7 @@ impl Definition {
             } else {
                 correlation * variance
             };
-            let turned = if is_first && moved && moved_before {
+            let turned = if is_first && self.turned {
                 (-error * self.innovation).min(0.25)
             } else {
                 0.0
@@ -253,7 +261,7 @@ impl Definition {
                 let noise = if size > 0.0 && self.same >= 8 {
                     0.85 * self.noise
                 } else {
-                    self.noise * (1.0 + gain * size) - 0.02 * product + 0.03 * turned
+                    self.noise * (1.0 + gain * size) - 0.02 * product + 0.02 * turned
                 };
                 noise.clamp(1e-5, 1e4)
             };
