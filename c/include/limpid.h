@@ -2,13 +2,12 @@
  *
  * Written by `cargo c-library header`; do not edit.
  *
- *   #include "limpid.h"
+ *   #include "imm.h"                     // host-sim export --estimator imm --c > imm.h; it includes this file
  *
- *   static const limpid_imm_t parameters = LIMPID_IMM_MINE;   // host-sim export --estimator imm --c
  *   static limpid_imm_state_t state;
  *
- *   limpid_imm_start(&parameters, &state, &sample);           // once, with the first sample
- *   float v = limpid_imm_update(&parameters, &state, &sample);// at every tick, counts per tick
+ *   limpid_imm_start(&limpid_imm_parameters, &state, &sample);            // once, with the first sample
+ *   float v = limpid_imm_update(&limpid_imm_parameters, &state, &sample); // at every tick, counts per tick
  *
  * - A tick is one control period. Velocities are in counts per tick: LIMPID_RAD_PER_S converts them.
  * - A count is modulo 2^32. Convert a counter of 16 bits with limpid_extended.
