@@ -220,12 +220,13 @@ impl Scale {
         if counts_per_rev == 0 {
             return Err(DesignError::COUNTS_PER_REV);
         }
-        let factor = (2.0 * core::f64::consts::PI * rate.0 / counts_per_rev as f64) as f32;
-        if !factor.is_normal() {
+        let factor = 2.0 * core::f64::consts::PI * rate.0 / counts_per_rev as f64;
+        // Numbers that f32 holds.
+        if !(factor >= 1e-30 && factor <= 1e30) {
             return Err(DesignError::RATE);
         }
         Ok(Self {
-            rad_per_s_per_count_per_tick: factor,
+            rad_per_s_per_count_per_tick: factor as f32,
         })
     }
 }
