@@ -28,7 +28,7 @@ pub struct ModelBankState<const K: usize> {
     pub(super) noise: f32,
     /// Innovation of the edge, or shift by the count, before, counts.
     innovation: f32,
-    /// How many in a row had the sign of the one before; below 0, how many the opposite one.
+    /// How many in a row had the sign of the one before; -1 where it had the opposite one.
     signs: i8,
     /// Change of the count in the tick before if it was one of a single count, else 0.
     heading: i8,

@@ -56,7 +56,6 @@ impl<const K: usize> ModelBankState<K> {
         let alternated = self.signs < 0;
         self.innovation = innovation;
         self.signs = match product < 0.0 {
-            true if alternated => self.signs.saturating_sub(1),
             true => -1,
             false if alternated => 1,
             false => self.signs.saturating_add(1),

@@ -44,7 +44,7 @@ fn bank_starts_anew_where_a_likelihood_is_no_number() {
         state.members[2].covariance[0] = -0.1;
         state.noise = f32::NAN;
         state.innovation = 2.0;
-        state.signs = -3;
+        state.signs = -1;
         let mut likelihoods = [Likelihood::CERTAIN; 3];
         likelihoods[k].factor = factor;
         state.weigh(&judged(likelihoods, 0.0), 1e-4, 1e-3);
