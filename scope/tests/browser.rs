@@ -1,56 +1,11 @@
-//! The page in a real browser, with the flash image behind it.
+//! The page in a real browser, with the flash image behind it: the handle, recordings, and several pages.
 
 mod common;
 
 use common::devtools::{Browser, Tab};
-use common::{ATTEMPTS, Server, get, image, is_stalled};
+use common::page::{drag, page, ready, run_scene, select};
+use common::{Server, get, image};
 use serde_json::json;
-
-/// The page is loaded, and this page commands a board that sends frames.
-fn ready(browser: &mut Browser, tab: &Tab) {
-    browser.wait(
-        tab,
-        "scope.role?.commands === true && scope.status?.mode === 'boot' && scope.frames > 2",
-    );
-}
-
-/// Arms the board and selects the scene of this name.
-fn run_scene(browser: &mut Browser, tab: &Tab, name: &str) {
-    browser.click(tab, "#arm");
-    browser.wait(tab, "scope.status.mode === 'armed'");
-    select(browser, tab, name);
-    browser.wait(tab, "scope.status.mode === 'running'");
-}
-
-/// Selects the scene of this name.
-fn select(browser: &mut Browser, tab: &Tab, name: &str) {
-    browser.value(tab, &format!(
-        "(() => {{ const s = $('scene'); s.value = [...s.options].find((o) => o.text === '{name}').value; s.onchange(); }})()"
-    ));
-}
-
-/// Presses the mouse on the handle, and moves it by this angle around its axis, rad.
-fn drag(browser: &mut Browser, tab: &Tab, by: f64, steps: u32) {
-    let place = browser.value(
-        tab,
-        "(() => { const b = $('device').getBoundingClientRect(), g = scope.view.geometry(); \
-        return [b.left + g.x, b.top + g.y, g.radius, scope.store.latest('handle_angle')]; })()",
-    );
-    let number = |k: usize| place[k].as_f64().expect("a number");
-    let (x, y, radius, from) = (number(0), number(1), number(2), number(3));
-    let at = |angle: f64| {
-        (
-            x + 0.9 * radius * angle.sin(),
-            y - 0.9 * radius * angle.cos(),
-        )
-    };
-    let (px, py) = at(from);
-    browser.mouse(tab, "mousePressed", px, py);
-    for step in 1..=steps {
-        let (px, py) = at(from + by * f64::from(step) / f64::from(steps));
-        browser.mouse(tab, "mouseMoved", px, py);
-    }
-}
 
 /// Largest change of the force at the fingertip between two frames since `window.at`, mN.
 fn largest_step(browser: &mut Browser, tab: &Tab) -> f64 {
@@ -65,12 +20,9 @@ fn largest_step(browser: &mut Browser, tab: &Tab) -> f64 {
 
 #[test]
 fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
+    let Some((server, mut browser, tab)) = page() else {
         return;
     };
-    let tab = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &tab);
     run_scene(&mut browser, &tab, "wall");
     // The first moments are slow motion: the emulator translates the image. A press would end by overload
     // after some seconds, and begins after them.
@@ -148,12 +100,9 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
 
 #[test]
 fn downloaded_recording_replays_to_the_estimates_of_the_page() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
+    let Some((server, mut browser, tab)) = page() else {
         return;
     };
-    let tab = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &tab);
     run_scene(&mut browser, &tab, "free-air");
     browser.click(&tab, "#record");
     browser.wait(&tab, "scope.status.recording > 0");
@@ -231,12 +180,9 @@ fn downloaded_recording_replays_to_the_estimates_of_the_page() {
 
 #[test]
 fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
+    let Some((server, mut browser, first)) = page() else {
         return;
     };
-    let first = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &first);
     let second = browser.open(&server.url(), 390, 844);
     browser.wait(&second, "scope.role?.commands === false && $('commands').disabled && !$('role').hidden && scope.frames > 2");
     // The narrow page needs no horizontal scroll.
@@ -274,197 +220,4 @@ fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
         .filter(|line| !line.contains("ERR_CONNECTION_REFUSED"))
         .collect();
     assert_eq!(unexpected, [""; 0]);
-}
-
-#[test]
-fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let tab = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &tab);
-    browser.value(&tab, "$('bench-card').open = true, 0");
-    browser.wait(&tab, "$('setting-current-scale').value === '1'");
-    let enter = |browser: &mut Browser, value: &str| {
-        browser.value(&tab, &format!(
-            "(() => {{ const i = $('setting-current-scale'); i.value = '{value}'; i.oninput(); i.onchange(); }})()"
-        ))
-    };
-    // A value at its bound is within it.
-    browser.wait(&tab, "$('settings').querySelector(':invalid') === null");
-    // What is out of the bounds stays in its field, and is not sent.
-    enter(&mut browser, "1.5");
-    browser.wait(&tab, "!$('setting-current-scale').checkValidity()");
-    enter(&mut browser, "0.5");
-    browser.wait(&tab, "$('setting-current-scale').value === '0.5'");
-    for attempt in 1.. {
-        browser.click(&tab, "[data-guide=bring-up]");
-        browser.wait(&tab, "scope.status.guide?.runs && $('store').disabled");
-        browser.wait(
-            &tab,
-            "$('guide').textContent.includes('pass') || !scope.status.guide.runs",
-        );
-        browser.wait(&tab, "!scope.status.guide.runs");
-        let failure = browser.value(&tab, "scope.status.guide.failure");
-        if failure.is_null() {
-            break;
-        }
-        assert!(attempt < ATTEMPTS && is_stalled(&failure), "{failure}");
-    }
-    browser.wait(
-        &tab,
-        "$('guide').textContent.includes('pass') && $('guide').textContent.endsWith('done')",
-    );
-    browser.click(&tab, "#store");
-    browser.wait(&tab, "$('stored').textContent === 'Settings stored.'");
-    browser.value(&tab, "$('bench-card').scrollIntoView()");
-    browser.picture(&tab, "settings.png");
-    assert_eq!(browser.complaints, [""; 0]);
-}
-
-#[test]
-fn gap_of_a_recording_has_no_line_and_an_axis_has_the_width_of_its_labels() {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../tests/data/logs/missing-rows.csv"
-    );
-    let server = Server::start(&["--recording", path]);
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let tab = browser.open(&server.url(), 1300, 900);
-    // Its rows, with a point without values in each gap.
-    browser.wait(
-        &tab,
-        "scope.status?.plays === false && scope.store.count > 10",
-    );
-    let gaps = browser.value(
-        &tab,
-        "(() => { const s = scope.store; let n = 0; for (let k = 1; k < s.count; k++) n += s.time[k] - s.time[k - 1] > s.gap; return n; })()",
-    );
-    assert!(gaps.as_u64() > Some(0), "{gaps}");
-    for buckets in [10_000, 10] {
-        let nulls = browser.value(
-            &tab,
-            &format!(
-                "(() => {{ const s = scope.store; const [t, x] = s.decimate([(k) => s.time[k]], s.time[0], s.end, {buckets}); \
-                 return x.filter((value) => value === null).length; }})()"
-            ),
-        );
-        assert_eq!(nulls, gaps, "{buckets}");
-    }
-    // The axis of six digits is as wide as its labels.
-    browser.value(
-        &tab,
-        "(() => { const { plot } = scope.plots.plots[0]; plot.setData([[0, 1], [1e6, 2e6], ...plot.data.slice(2).map(() => [null, null])]); \
-         plot.setScale('y', { min: 1e6, max: 2e6 }); })()",
-    );
-    browser.wait(
-        &tab,
-        "(() => { const { plot } = scope.plots.plots[0], axis = plot.axes[1]; plot.ctx.font = axis.font[0]; \
-         const widest = Math.max(...axis._values.map((text) => plot.ctx.measureText(text).width)) / devicePixelRatio; \
-         return axis._values.some((text) => text.length > 6) && axis._size >= widest + axis.ticks.size + axis.gap; })()",
-    );
-    assert_eq!(browser.complaints, [""; 0]);
-}
-
-#[test]
-fn controls_have_names_and_arrow_keys_choose_an_estimator() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let tab = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &tab);
-    run_scene(&mut browser, &tab, "wall");
-    let tree = browser.tell(&tab, "Accessibility.getFullAXTree", &json!({}));
-    let nodes = tree["nodes"].as_array().expect("nodes");
-    let named = |role: &str| -> Vec<_> {
-        let of_role = nodes.iter().filter(|it| it["role"]["value"] == role);
-        of_role.map(|it| it["name"]["value"].to_string()).collect()
-    };
-    let sliders = named("slider");
-    for name in ["position of wall", "stiffness of wall", "damping of wall"] {
-        assert!(sliders.contains(&format!("\"{name}\"")), "{sliders:?}");
-    }
-    assert!(!sliders.contains(&"\"\"".to_owned()), "{sliders:?}");
-
-    browser.wait(&tab, "scope.store.latest('estimator') === 0");
-    browser.wait(
-        &tab,
-        "$('estimator-0').tabIndex === 0 && $('estimator-1').tabIndex === -1",
-    );
-    browser.value(&tab, "$('estimator-0').focus()");
-    browser.key(&tab, "ArrowRight");
-    browser.wait(
-        &tab,
-        "scope.store.latest('estimator') === 1 && document.activeElement.id === 'estimator-1' \
-         && $('estimator-1').tabIndex === 0",
-    );
-    browser.key(&tab, "ArrowLeft");
-    browser.wait(&tab, "scope.store.latest('estimator') === 0");
-    assert_eq!(browser.complaints, [""; 0]);
-}
-
-#[test]
-fn sliders_have_the_values_of_the_board() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let tab = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &tab);
-    run_scene(&mut browser, &tab, "wall");
-    let enter = |browser: &mut Browser, value: &str| {
-        browser.value(&tab, &format!(
-            "(() => {{ const i = $('parameter-stiffness'); i.value = '{value}'; i.oninput(); }})()"
-        ))
-    };
-    let shown = |value: &str| {
-        format!(
-            "Math.abs($('parameter-stiffness').value - {value}) < 1e-6 && $('parameter-stiffness').previousSibling.textContent === '{value} N·m/rad'"
-        )
-    };
-    browser.wait(&tab, &shown("0.300"));
-    enter(&mut browser, "0.125");
-    browser.wait(&tab, "scope.status.tuned['2.1'] === 0.125");
-    browser.tell(&tab, "Page.reload", &json!({}));
-    browser.wait(
-        &tab,
-        "scope.role?.commands === true && scope.status?.mode === 'boot'",
-    );
-    select(&mut browser, &tab, "wall");
-    browser.wait(&tab, "scope.status.scene === 2");
-    browser.wait(&tab, &shown("0.125"));
-    // A value that does not come to the board leaves the slider again.
-    browser.value(&tab, "scope.link.send = () => {}, 0");
-    enter(&mut browser, "0.25");
-    browser.wait(&tab, &shown("0.250"));
-    browser.wait(&tab, &shown("0.125"));
-    assert_eq!(browser.complaints, [""; 0]);
-}
-
-#[test]
-fn dark_page_has_dark_plots() {
-    let server = Server::emulated();
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let tab = browser.open(&server.url(), 1300, 900);
-    ready(&mut browser, &tab);
-    let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
-    browser.tell(&tab, "Emulation.setEmulatedMedia", &dark);
-    browser.wait(
-        &tab,
-        "getComputedStyle(document.body).backgroundColor === 'rgb(20, 23, 26)'",
-    );
-    run_scene(&mut browser, &tab, "detents");
-    drag(&mut browser, &tab, 1.0, 40);
-    browser.wait(
-        &tab,
-        "scope.plots.plots[0].plot.axes[0].stroke() === '#9aa6b0'",
-    );
-    browser.picture(&tab, "dark.png");
-    assert_eq!(browser.complaints, [""; 0]);
 }

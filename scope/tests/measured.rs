@@ -8,8 +8,7 @@ use std::fs;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use common::Server;
-use common::devtools::Browser;
+use common::page::page;
 use serde_json::json;
 
 /// Time for the frames.
@@ -49,16 +48,10 @@ fn memory(id: u32) -> f64 {
 #[test]
 #[ignore = "measures for minutes"]
 fn frames_latency_processor_and_memory() {
-    let server = Server::emulated();
-    let id = server.child.id();
-    let Some(mut browser) = Browser::start() else {
+    let Some((server, mut browser, tab)) = page() else {
         return;
     };
-    let tab = browser.open(&server.url(), 1300, 900);
-    browser.wait(
-        &tab,
-        "scope.role?.commands === true && scope.status?.mode === 'boot' && scope.frames > 2",
-    );
+    let id = server.child.id();
     browser.value(&tab, "scope.link.send({ do: 'arm' }), 0");
     browser.wait(&tab, "scope.status.mode === 'armed'");
     browser.value(&tab, "scope.link.send({ do: 'scene', number: 1 }), 0");

@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub(crate) mod devtools;
+pub(crate) mod page;
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
