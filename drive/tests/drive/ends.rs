@@ -2,7 +2,7 @@
 
 use std::fs::OpenOptions;
 use std::io::Read as _;
-use std::process::{Command as Process, Stdio};
+use std::process::{Child, Command as Process, Stdio};
 use std::time::Duration;
 
 use drivers::{Command, Setting, Settings};
@@ -237,46 +237,9 @@ fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
     }
 }
 
-/// The command that takes back the verification of the signs.
-fn unverified() -> Command {
-    Command::Set {
-        setting: Setting::SignsVerified.number(),
-        value: 0.0,
-    }
-}
-
-/// No command among these changes a setting.
-fn assert_sets_nothing(commands: &[Command]) {
-    let is_set = |command: &Command| matches!(command, Command::Set { .. });
-    assert!(!commands.iter().any(is_set), "{commands:?}");
-}
-
-/// A tool that is killed leaves no earlier verification: it is taken back before a motor moves.
+/// A bring-up of a board with verified signs, which has taken them back and has armed the board.
 #[cfg(unix)]
-#[test]
-fn killed_bring_up_leaves_no_earlier_verification() {
-    let board = Board::new(Script {
-        settings: Settings::COMMISSIONED,
-        measures: Some([(0.0, 1.0); 2]),
-        ..Script::default()
-    });
-    let mut tool = board
-        .tool(&["bring-up"])
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    board.wait_for(unverified());
-    board.wait_for(ARM);
-    tool.kill().unwrap();
-    tool.wait().unwrap();
-    assert_sets_nothing(&board.commands());
-}
-
-/// An interrupt is no failed check, and leaves no earlier verification.
-#[cfg(unix)]
-#[test]
-fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
+fn armed_bring_up() -> (Board, Child) {
     let board = Board::new(Script {
         measures: Some([(0.0, 1.0); 2]),
         settings: Settings::COMMISSIONED,
@@ -288,8 +251,36 @@ fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    board.wait_for(unverified());
+    board.wait_for(Command::Set {
+        setting: Setting::SignsVerified.number(),
+        value: 0.0,
+    });
     board.wait_for(ARM);
+    (board, tool)
+}
+
+/// No command among these changes a setting.
+#[cfg(unix)]
+fn assert_sets_nothing(commands: &[Command]) {
+    let is_set = |command: &Command| matches!(command, Command::Set { .. });
+    assert!(!commands.iter().any(is_set), "{commands:?}");
+}
+
+/// A tool that is killed leaves no earlier verification: it is taken back before a motor moves.
+#[cfg(unix)]
+#[test]
+fn killed_bring_up_leaves_no_earlier_verification() {
+    let (board, mut tool) = armed_bring_up();
+    tool.kill().unwrap();
+    tool.wait().unwrap();
+    assert_sets_nothing(&board.commands());
+}
+
+/// An interrupt is no failed check, and leaves no earlier verification.
+#[cfg(unix)]
+#[test]
+fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
+    let (board, tool) = armed_bring_up();
     let id = tool.id().to_string();
     let killed = Process::new("kill").args(["-INT", &id]).status().unwrap();
     assert!(killed.success());
