@@ -201,9 +201,9 @@ pub fn rows_by_rate(rows: &[SensitivityRow]) -> Vec<Vec<&SensitivityRow>> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn error_without_a_reference_is_in_no_mean_and_has_a_note() {
-        let row = |scenario, rms_pct| SensitivityRow {
+    /// A run with the right constants.
+    fn right(scenario: &'static str, rms_pct: f64) -> SensitivityRow {
+        SensitivityRow {
             estimator: "low-pass",
             scenario,
             rate_hz: 1000.0,
@@ -213,8 +213,12 @@ mod tests {
             rms_rad_s: 1.0,
             rms_pct,
             outside: 0.0,
-        };
-        let text = table(&[row("hold", f64::INFINITY), row("step", 20.0)], 1000);
+        }
+    }
+
+    #[test]
+    fn error_without_a_reference_is_in_no_mean_and_has_a_note() {
+        let text = table(&[right("hold", f64::INFINITY), right("step", 20.0)], 1000);
         let [.., line, note] = text.lines().collect::<Vec<_>>()[..] else {
             panic!("{text}");
         };
@@ -228,17 +232,7 @@ mod tests {
 
     #[test]
     fn means_without_a_moving_scenario_have_a_note() {
-        let row = |scenario| SensitivityRow {
-            estimator: "pll",
-            scenario,
-            rate_hz: 1000.0,
-            seed: 1,
-            constant: None,
-            error: 0.0,
-            rms_rad_s: 1.0,
-            rms_pct: 20.0,
-            outside: 0.0,
-        };
+        let row = |scenario| right(scenario, 20.0);
         let note = "-: all columns but the first are means over the scenarios step, permanent, track, \
                     free-air, wall, texture, of which none is run. ";
         let text = table(&[row("heating")], 1000).replace('\n', " ");

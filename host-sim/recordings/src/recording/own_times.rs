@@ -110,12 +110,16 @@ impl OwnTimes {
 
 /// The time, s, and the unit of a field that has its unit in it, as MATLAB writes durations: `0.5 sec`.
 fn with_unit(text: &str) -> Option<(f64, &'static Unit)> {
-    let is_number = text.ends_with(|c: char| c.is_ascii_digit());
-    let mut units = Quantity::Time.units().iter().filter(|_| !is_number);
+    // Most fields are numbers: no unit is compared with them.
+    if text.ends_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    let mut units = Quantity::Time.units().iter();
     let (number, unit) = units.find_map(|unit| Some((unit.before(text)?, unit)))?;
     let number: f64 = number.trim_end().parse().ok()?;
-    let is_time = number.is_finite();
-    is_time.then(|| (unit.scale.of(number, 1.0), unit))
+    number
+        .is_finite()
+        .then(|| (unit.scale.of(number, 1.0), unit))
 }
 
 /// The moment that whole seconds and the part of a second in another column state.
