@@ -8,6 +8,7 @@ mod controller;
 mod current_scale;
 mod design;
 mod excite;
+mod fingerprint;
 mod index;
 mod margins;
 mod monitor;
