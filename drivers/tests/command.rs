@@ -1,8 +1,10 @@
 //! The command parser against frames, floods and garbage.
 
+use drivers::link::PROTOCOL;
 use drivers::{Command, Parser, encode};
 use haptic_control::Request;
 
+/// Every command.
 const COMMANDS: [Command; 13] = [
     Command::Request(Request::Arm),
     Command::Request(Request::Disarm),
@@ -42,6 +44,34 @@ fn crc8(bytes: &[u8]) -> u8 {
 
 fn parse(parser: &mut Parser, bytes: &[u8]) -> Vec<Command> {
     bytes.iter().filter_map(|&byte| parser.take(byte)).collect()
+}
+
+/// Kinds and payloads are on the wire between a tool and a board of another release: a change takes another
+/// [`PROTOCOL`](drivers::link::PROTOCOL).
+#[test]
+fn commands_have_the_bytes_of_protocol_1() {
+    let bodies = [
+        [1, 0, 0, 0, 0, 0, 0, 0, 0],
+        [2, 0, 0, 0, 0, 0, 0, 0, 0],
+        [3, 7, 0, 0, 0, 0, 0, 0, 0],
+        [3, 0xA5, 0, 0, 0, 0, 0, 0, 0],
+        [5, 0, 0, 0, 0, 0, 0, 0, 0],
+        // -0.0125 is 0xBC4CCCCD, 0.3 is 0x3E99999A and 0.5 is 0x3F000000.
+        [4, 0xCD, 0xCC, 0x4C, 0xBC, 0, 0, 0, 0],
+        [4, 0x01, 0x01, 0xA5, 0xA5, 0, 0, 0, 0],
+        [6, 2, 1, 0x9A, 0x99, 0x99, 0x3E, 0, 0],
+        [7, 3, 0, 0, 0, 0, 0, 0, 0],
+        [8, 0, 0, 0, 0, 0, 0, 0, 0],
+        [9, 4, 0, 0, 0, 0x3F, 0, 0, 0],
+        [10, 0, 0, 0, 0, 0, 0, 0, 0],
+        [11, 0, 0, 0, 0, 0, 0, 0, 0],
+    ];
+    assert_eq!(PROTOCOL, 1);
+    for (command, body) in COMMANDS.into_iter().zip(bodies) {
+        let bytes = encode(command);
+        assert_eq!((bytes[0], &bytes[1..10]), (0xA5, &body[..]), "{command:?}");
+        assert_eq!(bytes[10], crc8(&body), "{command:?}");
+    }
 }
 
 #[test]

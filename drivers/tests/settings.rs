@@ -4,27 +4,34 @@ use drivers::{REACHES, SETTINGS_BYTES, SaveError, Saved, Setting, Settings, Sett
 use estimator_core::Counts;
 use haptic_control::{CurrentScale, Currents};
 
-/// Names at their numbers. They are in the flash of boards: none ever changes.
-const NAMES: [&str; 12] = [
-    "zero-large",
-    "zero-small",
-    "gain-large",
-    "gain-small",
-    "current-scale",
-    "signs-verified",
-    "estimator",
-    "serial",
-    "limit-large",
-    "limit-small",
-    "offset-large",
-    "offset-small",
+/// Largest currents that the outputs command, A: 1798 of 2047 steps of 6 A and of 1.5 A.
+const LARGE: f32 = 6.0 * (1798.0 / 2047.0);
+const SMALL: f32 = 1.5 * (1798.0 / 2047.0);
+
+/// Name, default and range at their numbers. They are in the flash of boards: no name or number ever changes.
+const KNOWN: [(&str, f32, f32, f32); Setting::ALL.len()] = [
+    ("zero-large", 2048.0, 1848.0, 2248.0),
+    ("zero-small", 2048.0, 1848.0, 2248.0),
+    ("gain-large", 1.0, 0.8, 1.25),
+    ("gain-small", 1.0, 0.8, 1.25),
+    ("current-scale", 0.1, 0.0, 1.0),
+    ("signs-verified", 0.0, 0.0, 1.0),
+    ("estimator", 0.0, 0.0, 254.0),
+    ("serial", 0.0, 0.0, 16_777_215.0),
+    ("limit-large", LARGE, 0.0, LARGE),
+    ("limit-small", SMALL, 0.0, SMALL),
+    // Whole numbers that f32 has.
+    ("offset-large", 0.0, -8_388_608.0, 8_388_607.0),
+    ("offset-small", 0.0, -8_388_608.0, 8_388_607.0),
 ];
 
 #[test]
-fn numbers_do_not_change() {
-    for (number, name) in (0..).zip(NAMES) {
+fn numbers_and_ranges_do_not_change() {
+    for (number, known) in (0..).zip(KNOWN) {
         let setting = Setting::from_number(number).expect("a setting");
-        assert_eq!((setting as u8, setting.facts().name), (number, name));
+        let facts = setting.facts();
+        assert_eq!(setting as u8, number);
+        assert_eq!((facts.name, facts.default, facts.least, facts.most), known);
     }
     assert_eq!(Setting::from_number(Setting::ALL.len() as u8), None);
     assert_eq!(Setting::from_number(u8::MAX), None);

@@ -83,7 +83,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            an edge or another count; at 0.1 counts² no stamp is used
 ///            without, or with stamps that are not used, s = Σ w_i s_i, s' the sample before, V = P_00 + R of the
 ///            last member; R within 1e-5 and 1e4 counts²:
-///            R = 0.85 R where s² > V / 2 and s is at least the ninth of one sign in a row; else
+///            R = 0.85 R where s² > V / 2 and none of the last eight products s s' is below 0; else
 ///            R = R + a R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s s' within ±V
 ///            a = 0.03, but 0.0009 where the count stays and s² < V / 2. s s' < 0 after one that was not is 0, or
 ///            at least -1/4 count² where the count turned back by one
@@ -258,10 +258,10 @@ struct Over<'a, P> {
 
 /// How likely a bank found the measurement of a tick.
 struct Evidence {
-    /// The likelihood, times `deviation`'s root.
+    /// The likelihood, times the root of `variance`.
     likelihood: Likelihood,
     /// Variance of the middle member's innovation, counts²; 1 without an edge.
-    deviation: f32,
+    variance: f32,
 }
 
 impl<const K: usize, S: Stamps> ModelBank<K, S> {
@@ -329,7 +329,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
         }
         Some(Evidence {
             likelihood,
-            deviation: judged.variance,
+            variance: judged.variance,
         })
     }
 }

@@ -2,8 +2,8 @@
 
 use core::marker::PhantomData;
 
-/// A design whose bytes in memory are defined: those of `repr(C)`, little endian, which are the same on
-/// every little-endian target.
+/// A design whose bytes in memory are defined: those of `repr(C)`, little endian, with numbers of eight bytes
+/// aligned to eight. So they are on the targets of the library for C.
 ///
 /// A design has no pointer and no field that depends on the target. [`Memory::bytes`] writes its bytes, so
 /// that a constant of another language can have them, and a program that reads this constant as a design

@@ -4,7 +4,7 @@
 
 use std::env::{self, VarError};
 
-use measured::control_rate::{self, COUNTED_HZ};
+use measured::control_rate::{self, COUNTED_HZ, COUNTED_WINDOW};
 
 /// Prefix of the variables in which cargo names the features.
 const FEATURE: &str = "CARGO_FEATURE_";
@@ -36,6 +36,7 @@ fn pass_on() -> Result<(), String> {
         return Ok(());
     }
     println!("cargo::rustc-cfg=rate_is_checked");
+    println!("cargo::rustc-env=COUNTED_WINDOW={COUNTED_WINDOW}");
     println!("cargo::rerun-if-changed=../../measured/control.csv");
     let names = env::vars().filter_map(|(name, _)| {
         let name = name.strip_prefix(FEATURE)?;

@@ -124,7 +124,7 @@ impl<B: Board> ControlTask<B> {
         } else {
             None
         };
-        if let Some(Message::Settings(settings)) = &message {
+        if let Some(Message::Settings(settings, _)) = &message {
             board.calibrate(settings);
         }
         let request = control.accept(message);

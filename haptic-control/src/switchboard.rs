@@ -69,7 +69,8 @@ scenes!(active_scene);
 ///
 /// The scene changes between two ticks. The difference of the currents before and after the change
 /// is added to the new currents and fades with a time constant of 20 ms, so that the torque does
-/// not jump. An estimator that both scenes need continues; one that the scene before did not need
+/// not jump. Changes in every tick are low-passed with this time constant, and so are the currents by which
+/// the scene answers motion meanwhile. An estimator that both scenes need continues; one that the scene before did not need
 /// starts at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Switchboard<L, H> {
@@ -296,7 +297,9 @@ where
         let mut applied = [0.0; 2];
         for (i, applied) in applied.iter_mut().enumerate() {
             if state.change == Change::New {
-                state.added[i] = before[i] - wanted[i];
+                // An earlier change fades on: changes in every tick must not hold the currents where they are.
+                let faded = before[i] - self.fade * state.added[i];
+                state.added[i] = faded - wanted[i];
             }
             *applied = within(wanted[i] + state.added[i], -largest[i], largest[i]);
             state.added[i] -= self.fade * state.added[i];

@@ -6,6 +6,9 @@
 use crate::tables::CONTROL;
 use crate::{Difference, Row};
 
+/// Window of FOAW in the image whose control task is counted, intervals.
+pub const COUNTED_WINDOW: usize = 32;
+
 /// Images whose control task is counted: the large motor's estimator as the table names it, and the features
 /// of the firmware, separated by commas.
 pub const IMAGES: [(&str, &str); 5] = [
@@ -205,6 +208,15 @@ mod tests {
             assert!(with.ends_with("and options"), "{with}");
         }
         assert_eq!(khz("handle-imm", None).0, 25.1);
+    }
+
+    #[test]
+    fn counted_window_is_that_of_the_table() {
+        let (name, features) = IMAGES[0];
+        assert_eq!(
+            (name, features),
+            (&*format!("foaw-end-fit, n = {COUNTED_WINDOW}"), "")
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use haptic_control::{Mode, Stop};
 
 use super::features::Features;
 use super::wire::{Label, Logged, Wire};
-use super::{LONGEST_PAYLOAD, encode};
+use super::{BAUD, CRC, HEADER, LONGEST_PAYLOAD, encode};
 
 /// A message of the schema.
 #[derive(Clone, Copy, Debug)]
@@ -255,3 +255,26 @@ macro_rules! all {
     };
 }
 crate::frame_fields!(all, frame, lost);
+
+/// Bytes of a frame and of all that an image sends after each one.
+const EACH_MILLISECOND: usize = {
+    let payloads = [
+        Frame::SIZE,
+        Edge::SIZE,
+        Reference::SIZE,
+        Measured::SIZE,
+        Supply::SIZE,
+    ];
+    let mut bytes = payloads.len() * (HEADER + CRC);
+    let mut i = 0;
+    while i < payloads.len() {
+        bytes += payloads[i];
+        i += 1;
+    }
+    bytes
+};
+// Ten bits a byte.
+const _: () = assert!(
+    10_000 * EACH_MILLISECOND <= BAUD as usize,
+    "the port is too slow"
+);

@@ -240,7 +240,7 @@ impl<S: Stamps, I: BankInput> DrivenBank<S, I> {
             driven.likelihood.divisor
         };
         // Both ends are constants: the panic of `clamp` is removed.
-        let ratio = (plain.deviation / driven.deviation).clamp(RATIOS[0], RATIOS[1]);
+        let ratio = (plain.variance / driven.variance).clamp(RATIOS[0], RATIOS[1]);
         let prior = probability + (1.0 - probability) * self.towards - probability * self.away;
         let for_plain = (1.0 - prior) * plain.likelihood.relative(smallest);
         let for_driven = prior * driven.likelihood.relative(smallest) * root(ratio);

@@ -9,7 +9,7 @@ use crate::large::{Large, LargeEstimator as _};
 use crate::reports::Reports;
 use crate::scene::{Parameters, TORQUE_SCENE};
 
-/// Messages that wait for the control task, which takes three in ten ticks.
+/// Messages that wait for the control task, which takes three in ten ticks at 10 kHz.
 pub type Messages = Queue<Message, 8>;
 /// Largest number of bytes that one call takes.
 const BYTES: usize = 64;
@@ -161,16 +161,22 @@ impl<'q> Commands<'q> {
             .map(Message::Tuned)
     }
 
-    /// Changes a setting.
+    /// Changes a setting. What is on is switched off where the signs are no longer verified: it may be a scene in
+    /// closed loop.
     fn changed(&mut self, setting: u8, value: f32) -> Result<Message, Refusal> {
         let setting = Setting::from_number(setting).ok_or(Refusal::Unknown)?;
         if !value.is_finite() {
             return Err(Refusal::NotFinite);
         }
+        let verified = self.settings.are_signs_verified();
         if !self.settings.set(setting, value) {
             return Err(Refusal::OutOfBounds);
         }
-        Ok(Message::Settings(self.settings))
+        let request = match verified && !self.settings.are_signs_verified() {
+            true => Request::Select(0),
+            false => Request::KeepAlive,
+        };
+        Ok(Message::Settings(self.settings, request))
     }
 
     /// Whether the scene may be selected: a scene in closed loop needs verified signs. The safety machine

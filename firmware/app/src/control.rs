@@ -5,8 +5,8 @@ mod exchange;
 use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
-    Action, Balance, BalanceState, Currents, Findings, Flow, Mode, Monitor, MonitorState, Order,
-    Request, Safety, SafetyState, Stop, SupplyFinding as _, Windings, WindingsState,
+    Action, Balance, BalanceState, Currents, Findings, Flow, Monitor, MonitorState, Order, Request,
+    Safety, SafetyState, Stop, SupplyFinding as _, Windings, WindingsState,
 };
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
@@ -61,7 +61,7 @@ pub struct Control {
     safety: SafetyState,
     /// Finding of [`Self::check`] in the present tick, which is not calm then.
     found: Option<Stop>,
-    /// Whether an image that arms without a command does so.
+    /// Whether an image that arms without a command still has to.
     auto_arm: bool,
     monitor: MonitorState,
     /// Outlives every restart.
@@ -105,7 +105,10 @@ impl Control {
             // The first tick begins period 0.
             period: u32::MAX,
             overruns: 0,
-            auto_arm: AUTO_ARM && brown_out_reset && settings.are_signs_verified(),
+            auto_arm: AUTO_ARM
+                && reset == Stop::None
+                && brown_out_reset
+                && settings.are_signs_verified(),
         }
     }
 
@@ -155,10 +158,10 @@ impl Control {
                 self.core.choose(choice);
                 Some(Request::KeepAlive)
             }
-            Message::Settings(settings) => {
+            Message::Settings(settings, request) => {
                 self.core.scale(settings.current_scale());
                 self.indices.offset(settings.offsets());
-                Some(Request::KeepAlive)
+                Some(request)
             }
         }
     }
@@ -238,7 +241,10 @@ impl Control {
             currents: None,
         };
         let action = &mut outputs.action;
-        let request = inputs.request.or_else(|| self.auto_arm_request());
+        let request = match self.auto_arm {
+            true if AUTO_ARM => self.arm_by_itself(inputs.request),
+            _ => inputs.request,
+        };
         let is_calm = inputs.faults == Faults::NONE
             && inputs.missed == 0
             && has_finite_sum(action)
@@ -319,19 +325,22 @@ impl Control {
         self.phase.tick(self.period)
     }
 
-    /// Request of an image that arms without a command. It arms after boot, and not from the mode
-    /// safe.
-    fn auto_arm_request(&self) -> Option<Request> {
+    /// Request of an image that arms without a command, once after boot, or that of a command. A command that
+    /// is more than a keep-alive takes over.
+    #[cold]
+    fn arm_by_itself(&mut self, command: Option<Request>) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
-        if !AUTO_ARM || !self.auto_arm {
-            return None;
+        match (command, self.tick()) {
+            (None | Some(Request::KeepAlive), SELECT) => return Some(Request::Select(FIRST)),
+            (None | Some(Request::KeepAlive), ARM) => {
+                self.auto_arm = false;
+                return Some(Request::Arm);
+            }
+            (None | Some(Request::KeepAlive), _) => {}
+            (Some(_), _) => self.auto_arm = false,
         }
-        match (self.tick(), self.safety.mode()) {
-            (SELECT, Mode::Boot) => Some(Request::Select(FIRST)),
-            (ARM, Mode::Boot) => Some(Request::Arm),
-            _ => None,
-        }
+        command
     }
 }
 
@@ -358,6 +367,29 @@ fn are_finite(action: &Action) -> bool {
 mod tests {
     use super::*;
     use haptic_control::{NewtonMetres, RadPerS};
+
+    /// The number of the tick is modulo 2^32: it comes again after 5 days at 10 kHz, or 30 h at 40 kHz.
+    #[test]
+    fn image_that_arms_by_itself_does_so_once() {
+        let at_rest = Sample::default();
+        let mut control = Control::new(&at_rest, Stop::None, true, &Settings::COMMISSIONED);
+        control.auto_arm = true;
+        let mut requests = heapless::Vec::<_, 4>::new();
+        while control.auto_arm {
+            control.phase = control.phase.next();
+            if control.phase == Phase::FRAME {
+                control.period = control.period.wrapping_add(1);
+            }
+            let command = Some(Request::KeepAlive);
+            let request = control.arm_by_itself(command);
+            if request != command {
+                requests.push((control.tick(), request)).unwrap();
+            }
+        }
+        let armed = RATE_HZ / 10;
+        let select = (armed - 1, Some(Request::Select(FIRST)));
+        assert_eq!(requests, [select, (armed, Some(Request::Arm))]);
+    }
 
     #[test]
     fn action_with_one_non_finite_number_is_detected() {

@@ -21,10 +21,13 @@ pub const LEARNING: [&str; 2] = ["adaptive", "adaptive-edge"];
 pub const INTERVALS: usize = tuned::image("large", NAMES[0], RATE, "n") as usize;
 // The build script knows the count of this window alone.
 #[cfg(rate_is_checked)]
-const _: () = assert!(
-    INTERVALS <= 32,
-    "at this RATE, a window n of at most 32 intervals: the control task was counted with it"
-);
+const _: () = match usize::from_str_radix(env!("COUNTED_WINDOW"), 10) {
+    Ok(counted) => assert!(
+        INTERVALS <= counted,
+        "at this RATE, a window n of at most that with which the control task was counted"
+    ),
+    Err(_) => panic!("COUNTED_WINDOW"),
+};
 /// FOAW over at most [`INTERVALS`].
 pub type Window = Foaw<INTERVALS, EndFit>;
 /// The parameters of [`Window`].

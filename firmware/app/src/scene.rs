@@ -1,5 +1,4 @@
-//! The scenes of the image and the estimator of the handle. Only this file, `large` and `config` have
-//! `cfg`.
+//! The scenes of the image and the estimator of the handle.
 
 use estimator_core::{
     Confidence as _, Imm, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance,

@@ -37,7 +37,7 @@ impl Texture {
         }
     }
 
-    /// Frequency in a controller that runs at `rate`, a whole number of Hz, to 2^-17 Hz.
+    /// Frequency in a controller that runs at `rate`, a whole number of Hz, to 2^-16 Hz.
     fn frequency(&self, rate: Hertz) -> f32 {
         let product = u64::from(self.step) * u64::from(rate.0 as u32);
         ((product + (1 << 15)) >> 16) as u32 as f32 / 65_536.0

@@ -284,7 +284,7 @@ fn debug_settings_refuse_arming_and_do_not_stop_an_armed_device() {
 
 #[test]
 fn reset_with_a_cause_boots_in_state_safe() {
-    for stop in (1..=17).map(|code| Stop::from_code(code).unwrap()) {
+    for &stop in Stop::ALL.iter().filter(|stop| **stop != Stop::None) {
         let mut state = SAFETY.start(stop);
         assert!(!tick(&mut state, WELL, None).enable);
         assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));

@@ -1,14 +1,16 @@
 //! The list of scenes, and their parameters: set while scenes run, within bounds or not at all.
 
 use estimator_core::{Count, Hertz, Pll, Sample, preset};
-use haptic_control::{AnyScene, Detents, Radians, Refusal, SceneKind, Switchboard, Texture, Wall};
+use haptic_control::{
+    AnyScene, Detents, Friction, Radians, Refusal, SceneKind, Switchboard, Texture, Wall,
+};
 
-use crate::bench::{BOUNDS, HANDLE, RATE, RIG, SCENES};
+use crate::bench::{BOUNDS, DEVICE, HANDLE, RATE, RIG, SCENES};
 
 /// Numbers and names are part of commands and recordings: they never change.
 #[test]
 fn scenes_keep_their_numbers_and_names() {
-    let names = [
+    let names: [&str; SceneKind::ALL.len()] = [
         "off",
         "free-air",
         "wall",
@@ -20,6 +22,7 @@ fn scenes_keep_their_numbers_and_names() {
         "torque",
         "inertia",
         "excite",
+        "friction",
     ];
     for (number, name) in names.into_iter().enumerate() {
         assert_eq!(SceneKind::ALL[number].name(), name);
@@ -152,6 +155,9 @@ fn setting_a_parameter_changes_no_other() {
     let texture = |a, f| AnyScene::Texture(Texture::new(a, Hertz(f), RATE).unwrap());
     assert_eq!(SCENES[6].tuned(0, 1e-3, &BOUNDS), Ok(texture(1e-3, 150.0)));
     assert_eq!(SCENES[6].tuned(1, 200.0, &BOUNDS), Ok(texture(6e-3, 200.0)));
+    let friction = |torque, damping| AnyScene::Friction(Friction::new(torque, damping).unwrap());
+    assert_eq!(SCENES[11].tuned(0, 5e-3, &BOUNDS), Ok(friction(5e-3, 2e-3)));
+    assert_eq!(SCENES[11].tuned(1, 1e-3, &BOUNDS), Ok(friction(4e-3, 1e-3)));
 }
 
 #[test]
@@ -176,6 +182,8 @@ fn parameters_beyond_the_device_are_refused() {
         (8, 0, 0.0401),
         // More than half of the handle's own.
         (9, 0, 2.6e-6),
+        (11, 0, 0.0401),
+        (11, 1, 3.001e-3),
     ] {
         let signed = matches!((scene, parameter), (2 | 3 | 8 | 9, 0));
         let low = if signed { -just_above } else { gain[0] };
@@ -209,6 +217,8 @@ fn parameters_at_a_bound_are_accepted() {
         (7, 1, vec![0.0, 3e-3]),
         (8, 0, vec![40e-3, -40e-3, 0.0]),
         (9, 0, vec![2.5e-6, -2.5e-6, 0.0]),
+        (11, 0, vec![0.0, 40e-3]),
+        (11, 1, vec![0.0, 3e-3]),
     ] {
         for value in values {
             let tuned = SCENES[scene].tuned(parameter, value, &BOUNDS);
@@ -224,10 +234,39 @@ fn parameters_at_a_bound_are_accepted() {
     assert_eq!(one.tuned(0, 41e-3, &BOUNDS), Err(Refusal::OutOfBounds));
 }
 
+/// A host may send parameters in every tick. They are followed late by the time constant of the fade, 20 ms.
+#[test]
+fn parameters_that_change_in_every_tick_take_effect() {
+    const PER_REV: u16 = 24;
+    const TICKS_OF_FADE: f64 = 200.0;
+    let board = Switchboard::new(HANDLE, HANDLE, RIG, RATE);
+    let crest = Count((20_000.0 / (4.0 * f64::from(PER_REV))) as u32);
+    let crest = Sample::default().with_coupled(crest);
+    // Torque at the end of amplitudes that rise by `rise` a tick, N.m.
+    let torque = |rise: f64| {
+        let detents = |k: u32| {
+            let amplitude = 2e-3 + rise * f64::from(k);
+            AnyScene::Detents(Detents::new(amplitude as f32, PER_REV).unwrap())
+        };
+        let mut state = board.start(&Sample::default());
+        board.select(&mut state, detents(0), &Sample::default());
+        let mut action = board.step(&mut state, &crest);
+        for k in 0..=4000 {
+            board.retune(&mut state, detents(k));
+            action = board.step(&mut state, &crest);
+        }
+        -f64::from(action.currents.small.get()) * DEVICE.small.torque_constant
+    };
+    let error = torque(0.0) / 2e-3 - 1.0;
+    assert!(error.abs() < 1e-3, "{error}");
+    let late = 4000.0 - (torque(1e-6) - 2e-3) / 1e-6;
+    assert!((late - TICKS_OF_FADE).abs() < 5.0, "{late} ticks");
+}
+
 /// Numbers and names of parameters are part of commands: they never change.
 #[test]
 fn parameters_keep_their_numbers_and_names() {
-    let names = [
+    let names: [&str; SceneKind::ALL.len()] = [
         "",
         "",
         "position stiffness damping",
@@ -239,6 +278,7 @@ fn parameters_keep_their_numbers_and_names() {
         "torque",
         "inertia",
         "",
+        "torque damping",
     ];
     for (kind, names) in SceneKind::ALL.into_iter().zip(names) {
         let known = kind

@@ -125,7 +125,7 @@ fn probability_is_the_probability_by_the_densities_of_both_banks() {
     ] {
         let evidence = |(error, variance): (f32, f32)| Evidence {
             likelihood: Likelihood::new(1.0, 0.5 * error * error / variance),
-            deviation: variance,
+            variance,
         };
         let found = bank.probability(probability, &evidence(plain), &evidence(driven));
         let density = |(error, variance): (f32, f32)| {
@@ -214,9 +214,9 @@ fn mean_acceleration_and_variance_are_those_of_the_mixture() {
 #[test]
 fn root_of_the_ratio_is_limited() {
     let bank = DrivenBank::on_counts(Known, [0.0, 0.0], RATE).unwrap();
-    let certain = |deviation| Evidence {
+    let certain = |variance| Evidence {
         likelihood: Likelihood::CERTAIN,
-        deviation,
+        variance,
     };
     for (ratio, limit) in [(1e6, 10.0), (1e-6, 0.1)] {
         let found = bank.probability(0.5, &certain(ratio), &certain(1.0));

@@ -62,6 +62,6 @@ pub enum Message {
     Tuned(Tuned),
     /// Selection of the large motor's estimator. An image of one estimator has no such message.
     Estimator(Choice),
-    /// Changed settings.
-    Settings(Settings),
+    /// Changed settings, and the request that comes with them.
+    Settings(Settings, Request),
 }

@@ -207,6 +207,19 @@ fn auto_arm_requires_brown_out_reset_and_verified_signs() {
 }
 
 #[test]
+fn command_before_auto_arm_takes_over_but_a_keep_alive_does_not() {
+    for command in [Request::KeepAlive, Request::Disarm, Request::Select(FIRST)] {
+        let mut bench = Bench::new();
+        bench.wait(ticks(0.05));
+        bench.request(command);
+        // In every tick: the request of an image that arms by itself comes before keep-alives.
+        bench.run(ticks(0.1));
+        let arms = AUTO_ARM && command == Request::KeepAlive;
+        assert_eq!(bench.state().0.is_enabled(), arms, "{command:?}");
+    }
+}
+
+#[test]
 fn parameter_commands_take_effect_and_count_as_keep_alive() {
     let mut bench = Bench::new();
     let request = |message| bench.control.accept(message);

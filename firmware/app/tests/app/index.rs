@@ -98,7 +98,8 @@ fn reported_positions_are_relative_to_the_mechanical_zeros() {
     assert!(settings.set(Setting::OffsetLarge, 40.0));
     assert!(settings.set(Setting::OffsetSmall, -7.0));
     let mut changed = Bench::start(0);
-    changed.control.accept(Some(Message::Settings(settings)));
+    let message = Message::Settings(settings, Request::KeepAlive);
+    changed.control.accept(Some(message));
     for mut bench in [Bench::with(&settings, Stop::None, false), changed] {
         let sample = bench.record().sample;
         pulse(&mut bench, Some(100), Some(200));

@@ -3,12 +3,12 @@
 use drivers::{Command, Setting, Settings, encode};
 use firmware_app::commands::{Asked, Channel, Commands, Messages, Rejected};
 use firmware_app::config::DEVICE;
-use firmware_app::control::Message;
+use firmware_app::control::{Inputs, Message};
 use firmware_app::large::{Large, LargeEstimator as _};
 use firmware_app::scene::FIRST;
-use haptic_control::{Request, SceneKind, Stop};
+use haptic_control::{Mode, Request, SceneKind, Stop};
 
-use crate::bench::{Bench, ticks};
+use crate::bench::{Bench, CALM, ticks};
 
 /// The messages of these commands on a board with these settings, what they asked for, and the counts.
 fn followed(settings: Settings, commands: &[Command]) -> (Vec<Message>, Asked, Rejected, Settings) {
@@ -42,10 +42,10 @@ fn changed_settings_reach_the_control_task_whole() {
     let mut expected = Settings::DEFAULT;
     assert!(expected.set(Setting::ZeroLarge, 2051.5) && expected.set(Setting::CurrentScale, 0.5));
     assert_eq!(settings, expected);
-    let [Message::Settings(_), Message::Settings(last)] = messages[..] else {
+    let [Message::Settings(..), Message::Settings(last, request)] = messages[..] else {
         panic!("two messages");
     };
-    assert_eq!(last, expected);
+    assert_eq!((last, request), (expected, Request::KeepAlive));
     assert_eq!((asked, rejected), (Asked::default(), Rejected::default()));
 }
 
@@ -110,6 +110,45 @@ fn closed_loop_scenes_are_refused_until_the_signs_are_verified() {
     assert!(open.eq([SceneKind::Off, SceneKind::Excite]));
 }
 
+/// However the scene came to be on or chosen while the signs were verified.
+#[test]
+fn signs_that_are_no_longer_verified_switch_the_scene_off() {
+    if FIRST == 0 {
+        return;
+    }
+    let taken_back = |mut bench: Bench| {
+        let commands = [set(Setting::SignsVerified, 0.0)];
+        let (messages, ..) = followed(Settings::COMMISSIONED, &commands);
+        for message in messages {
+            let request = bench.control.accept(Some(message));
+            bench.step(&Inputs { request, ..CALM });
+        }
+        bench
+    };
+    // Running.
+    let running = Bench::start(FIRST);
+    assert_eq!(running.state().0, Mode::Running);
+    assert_eq!(taken_back(running).state(), (Mode::Armed, Stop::None));
+    // Chosen before the device is armed, and while it settles.
+    let mut chosen = Bench::new();
+    chosen.request(Request::Select(FIRST));
+    let mut settling = Bench::new();
+    settling.request(Request::Arm);
+    settling.request(Request::Select(FIRST));
+    for (mut bench, arms) in [(taken_back(chosen), true), (taken_back(settling), false)] {
+        if arms {
+            bench.request(Request::Arm);
+        }
+        bench.run(ticks(0.03));
+        assert_eq!(bench.state(), (Mode::Armed, Stop::None));
+    }
+    // Signs that were not verified before are no change.
+    let commands = [set(Setting::SignsVerified, 0.0)];
+    let (messages, ..) = followed(Settings::DEFAULT, &commands);
+    let request = Bench::new().control.accept(messages.into_iter().next());
+    assert_eq!(request, Some(Request::KeepAlive));
+}
+
 #[test]
 fn requests_to_arm_are_noted_once() {
     let mut queue = Messages::new();
@@ -151,7 +190,8 @@ fn control_task_scales_its_currents_at_the_start_and_by_message() {
     let started = largest(Bench::with(&part(0.01), Stop::None, true));
     assert!((started - limit).abs() < 1e-6, "{started} A");
     let mut bench = Bench::new();
-    let request = bench.control.accept(Some(Message::Settings(part(0.01))));
+    let message = Message::Settings(part(0.01), Request::KeepAlive);
+    let request = bench.control.accept(Some(message));
     assert_eq!(request, Some(Request::KeepAlive));
     let changed = largest(bench);
     assert!((changed - limit).abs() < 1e-6, "{changed} A");
@@ -168,7 +208,8 @@ fn control_task_keeps_its_currents_below_the_limit_of_the_bench() {
     let started = largest(Bench::with(&settings, Stop::None, true));
     assert_eq!(started, limit);
     let mut bench = Bench::new();
-    bench.control.accept(Some(Message::Settings(settings)));
+    let message = Message::Settings(settings, Request::KeepAlive);
+    bench.control.accept(Some(message));
     assert_eq!(largest(bench), limit);
 }
 
