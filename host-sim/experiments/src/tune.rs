@@ -13,10 +13,10 @@ mod search;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::{Case, interval, trace};
+use crate::parallel::in_order;
 use catalogue::constant_error::ConstantError;
 use catalogue::estimators::{Kind, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind};
@@ -101,11 +101,10 @@ pub fn tune(
                 keep: false,
             })
             .collect();
-        let traces = cases.par_iter().map(|case| {
+        in_order(&cases, |case| {
             look();
             trace(case, &set.device, read)
-        });
-        traces.collect::<Result<Vec<_>, _>>()
+        })
     };
     let traces = [traces(0..set.seeds)?, traces(set.seeds..set.seeds + 1)?];
     let [seen, unseen] = [

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use rayon::prelude::*;
-
 use recordings::log::Log;
 use recordings::recording::{ReadOptions, Recording};
 use simulation::device::Device;
@@ -13,6 +11,7 @@ use super::coarsen::Coarse;
 use super::fine::Fine;
 use super::run::Settings;
 use super::sources::{self, Role, Source};
+use crate::parallel::in_order;
 
 /// Largest relative difference of a coarse recording's rate from an asked one.
 const SAME_RATE: f64 = 1e-3;
@@ -33,12 +32,11 @@ impl Recordings {
     /// `device` turns torques into currents.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names the file and what is wrong.
+    /// [`Failure::Input`] that names the first file, in order, that cannot be read, and what is wrong.
     pub fn read(folder: &Path, device: &Device, seconds: f64) -> Result<Self, Failure> {
         let listed = sources::read(folder)?;
-        let read = |source: Source| Ok((source.clone(), data(folder, &source, device, seconds)?));
-        let all: Result<Vec<_>, Failure> = listed.into_par_iter().map(read).collect();
-        all.map(Self)
+        let read = |source: &Source| Ok((source.clone(), data(folder, source, device, seconds)?));
+        in_order(&listed, read).map(Self)
     }
 
     /// The recordings that were read, in the order of the list.

@@ -10,7 +10,6 @@ mod path;
 mod tune;
 
 use estimator_core::FiniteDifference;
-use rayon::prelude::*;
 
 use scoring::evaluation::Evaluation;
 use scoring::score::{Truth, Wanted};
@@ -25,6 +24,7 @@ use super::cases::{Case, Recordings};
 use super::rest::{moving_at_rest, rest};
 use super::run::{Row, Score, Settings};
 use crate::compare::interval;
+use crate::parallel::in_order;
 
 /// The scores of a row.
 const WANTED: Wanted = Wanted {
@@ -146,8 +146,7 @@ pub fn rows(
         Ok(rows)
     };
     let fine: Vec<_> = cases.iter().filter(|case| case.phase.is_some()).collect();
-    let rows: Result<Vec<_>, Failure> = fine.into_par_iter().map(|case| of_case(&case)).collect();
-    Ok(rows?.into_iter().flatten().collect())
+    Ok(in_order(&fine, of_case)?.into_iter().flatten().collect())
 }
 
 /// Scores of the estimators of `settings`, as they are shipped, that run at `rate_hz` in every one of
@@ -184,8 +183,7 @@ pub fn ours_at(
         Ok(rows.collect())
     };
     let fine: Vec<_> = cases.iter().filter(|case| case.phase.is_some()).collect();
-    let rows: Result<Vec<_>, Failure> = fine.into_par_iter().map(|case| of_case(&case)).collect();
-    Ok(rows?.into_iter().flatten().collect())
+    Ok(in_order(&fine, of_case)?.into_iter().flatten().collect())
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Every estimator on every recording.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use catalogue::estimators::{Kind, Setup};
@@ -15,6 +14,7 @@ use super::cases::{Case, Recordings};
 use super::rest::{moving_at_rest, rest};
 use super::sources::Role;
 use crate::compare::interval;
+use crate::parallel::in_order;
 
 /// What to run.
 #[derive(Clone, Debug)]
@@ -101,7 +101,7 @@ pub fn run(
         done();
         outcome
     };
-    cases.par_iter().map(one).collect()
+    in_order(cases, one)
 }
 
 fn outcome(

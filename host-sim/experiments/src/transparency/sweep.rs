@@ -11,13 +11,14 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use estimator_core::{Amps, Count, Hertz, Sample, Skip};
 use haptic_control::{Controller, Handle, LoopPoles, NewtonMetres, Radians, Rig, Scene, Wanted};
-use rayon::prelude::*;
+
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::compare::{LoopSettings, device};
 use super::run::estimator;
 use super::{Fingertip, REFERENCE};
+use crate::parallel::in_order;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::PlantKind;
 use simulation::device::Device;
@@ -90,10 +91,9 @@ pub fn sweep(settings: &LoopSettings, rate_hz: f64, plant: PlantKind) -> Result<
     let usual = Kind::named(super::compare::DEFAULT_ESTIMATOR)?;
     candidates.push((REFERENCE, build(usual, counts)?, counts));
     let rig = SweepRig::new(&device, rate_hz);
-    let runs = candidates
-        .par_iter()
-        .map(|(name, large, counts)| Ok((*name, rig.run(large, &handle, *counts)?)))
-        .collect::<Result<_, Failure>>()?;
+    let runs = in_order(&candidates, |(name, large, counts)| {
+        Ok::<_, Failure>((*name, rig.run(large, &handle, *counts)?))
+    })?;
     Ok(Swept {
         rate_hz,
         plant,

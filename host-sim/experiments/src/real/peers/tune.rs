@@ -7,6 +7,7 @@ use terminal::failure::Failure;
 use super::Scored;
 use super::list::Peer;
 use super::path;
+use crate::parallel::in_order;
 use crate::real::cases::{Case, Recordings};
 use crate::real::pool::distinct;
 use crate::real::run::Settings;
@@ -69,15 +70,15 @@ pub fn tune(
     for (counts_per_rev, rate_hz) in blocks {
         let of = |case: &&&Case| case.counts_per_rev == counts_per_rev && case.rate_hz == rate_hz;
         let own: Vec<_> = choosing.iter().filter(of).copied().collect();
-        let traces = own.par_iter().map(|case| recordings.recording(case));
-        let traces: Vec<_> = traces.collect::<Result<_, _>>()?;
+        let traces = in_order(&own, |case| recordings.recording(case))?;
         let scored = own.iter().zip(&traces);
         let scored = scored.map(|(case, one)| Scored::new(&one.trace, case, settings, WANTED));
         let scored: Vec<_> = scored.collect::<Result<_, _>>()?;
         for peer in peers.iter().filter(|peer| !peer.parameters.is_empty()) {
-            let paths = own.par_iter().zip(&scored);
-            let paths = paths.map(|(case, scored)| path::of(recordings, case, peer, scored.trace));
-            let paths: Vec<_> = paths.collect::<Result<_, _>>()?;
+            let each: Vec<_> = own.iter().zip(&scored).collect();
+            let paths = in_order(&each, |(case, scored)| {
+                path::of(recordings, case, peer, scored.trace)
+            })?;
             let cost = |values: &[f64]| {
                 let errors = paths.par_iter().zip(&scored).map(|(path, scored)| {
                     let velocity = (peer.run)(path, values);
