@@ -82,7 +82,7 @@ impl Amplifier {
 pub(crate) struct Amplifiers {
     pub(crate) each: [Amplifier; 2],
     /// Time until which the emergency stop opens the interlock loop, ns.
-    pub(crate) stop_until_ns: u64,
+    stop_until_ns: u64,
     /// Levels on the wires; `None` until they are set after a restart.
     driven: Option<Wires>,
 }
@@ -126,6 +126,11 @@ impl Amplifiers {
         pins::pull_enables_down(part, at);
         self.driven = None;
         self.follow(part, at);
+    }
+
+    /// Opens the interlock loop until this time at least, ns.
+    pub(crate) fn stop_until(&mut self, ns: u64) {
+        self.stop_until_ns = self.stop_until_ns.max(ns);
     }
 
     /// Levels of the current monitors, codes.

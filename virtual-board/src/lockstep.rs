@@ -28,7 +28,7 @@ use crate::pins;
 use crate::port::Port;
 use crate::probe::{DebugProbe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
-use crate::run::{ControlTick, DacError, HAND_HZ, MONITOR_AMPS, PlantState, Setup};
+use crate::run::{ControlTick, DacError, HAND_HZ, MONITOR_AMPS, PlantState, RATE_HZ, Setup};
 use crate::stack::Stack;
 use crate::trace::Trace;
 pub use core_access::CoreAccess;
@@ -39,7 +39,7 @@ use inject::Stalls;
 const STEP_NS: u64 = 10_000;
 const STEP_S: f64 = 10e-6;
 /// Steps of the plant per tick of the hand, and per poll of the debug probe.
-const STEPS_PER_TICK: u64 = 10;
+const STEPS_PER_TICK: u64 = (1e9 / HAND_HZ) as u64 / STEP_NS;
 const STEPS_PER_LOOK: u64 = 100;
 
 /// Counters of TIM4 (large) and TIM3 (small).
@@ -59,6 +59,22 @@ pub(crate) struct Recorded {
     pub(crate) unclosed: u32,
     /// Largest number of bytes of stack in use.
     pub(crate) stack: u64,
+}
+
+impl Recorded {
+    /// Period of the latest control ticks, ns; that of an image that is built without `RATE` before the second.
+    fn period_ns(&self) -> f64 {
+        let latest = self.ticks.len().saturating_sub(10);
+        let starts = self.ticks[latest..].windows(2);
+        // One that comes late brings the next one nearer by as much.
+        let count = starts.len() as f64;
+        let all: u64 = starts.map(|pair| pair[1].at_ns - pair[0].at_ns).sum();
+        if count > 0.0 {
+            all as f64 / count
+        } else {
+            1e9 / RATE_HZ
+        }
+    }
 }
 
 pub(crate) struct Lockstep {

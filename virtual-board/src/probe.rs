@@ -18,7 +18,7 @@ pub(crate) struct DebugProbe {
     /// Bytes from up channel 1, the link.
     pub(crate) link: Vec<u8>,
     /// Time from which telemetry is read, ns.
-    pub(crate) drains_from: u64,
+    drains_from: u64,
     /// Whether the command channel is kept full of random bytes.
     pub(crate) floods: bool,
     /// Bytes of the first pending command that the channel has accepted.
@@ -54,6 +54,11 @@ impl DebugProbe {
             to_send: schedule(commands.chain(setup.garbage.iter().cloned())),
             next_keep_alive: setup.keep_alive.then_some(KEEP_ALIVE_NS),
         }
+    }
+
+    /// Reads no telemetry until this time at least, ns.
+    pub(crate) fn pause_until(&mut self, ns: u64) {
+        self.drains_from = self.drains_from.max(ns);
     }
 
     pub(crate) fn poll(&mut self, now_ns: u64, memory: &mut dyn Memory) {

@@ -1,6 +1,6 @@
 //! Scores of a run: parasitic force, and cost of the control task.
 
-use crate::run::{ControlTick, Outcome};
+use crate::run::{ControlTick, HAND_HZ, Outcome, PlantState};
 
 /// Parasitic force at the fingertip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,13 +103,12 @@ impl Outcome {
             .zip(&healthy.plant_states)
             .enumerate();
         let inside = states.filter(|(k, _)| {
-            let t = *k as f64 * 1e-4;
+            let t = *k as f64 / HAND_HZ;
             t >= since_s && t <= until_s
         });
-        let difference =
-            |(_, (mine, other)): (usize, (&crate::run::PlantState, &crate::run::PlantState))| {
-                2e3 * (mine.felt - other.felt).abs() / diameter_m
-            };
+        let difference = |(_, (mine, other)): (usize, (&PlantState, &PlantState))| {
+            2e3 * (mine.felt - other.felt).abs() / diameter_m
+        };
         inside.map(difference).fold(0.0, f64::max)
     }
 }

@@ -107,6 +107,23 @@ fn halted_core_has_its_amplifiers_disabled_while_the_watchdog_is_frozen() {
     assert_eq!((run.restarts.len(), ticks(&run, BETWEEN_S, 0.25)), (0, 0));
 }
 
+#[test]
+fn fault_that_passes_does_not_end_one_that_lasts() {
+    let both = |lasting, passing| {
+        run(&Setup {
+            seconds: 0.35,
+            faults: vec![(BETWEEN_S, lasting), (BETWEEN_S + 0.01, passing)],
+            commands: vec![(0.3, Command::Arm)],
+            ..Setup::default()
+        })
+    };
+    let open = both(Fault::EmergencyStop, Fault::InterlockGlitch);
+    assert_eq!(state(&open, 0.35), (Mode::Safe, Stop::Interlock));
+    assert_eq!(changes(&open, 0.25), []);
+    let frozen = both(Fault::FrozenHalt, Fault::Halt(5));
+    assert_eq!(ticks(&frozen, BETWEEN_S, 0.35), 0);
+}
+
 /// The enables lapse, and stay so.
 #[test]
 fn halted_core_has_its_amplifiers_disabled_while_timers_continue() {

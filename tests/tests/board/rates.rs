@@ -120,6 +120,20 @@ fn faults_are_found_in_time_at_every_rate() {
         let off_s = hung.off_after(SETTLED_S).expect("it is switched off");
         let periods = off_s / period_s;
         assert!((14.9..17.0).contains(&periods), "{rate_hz} Hz: {off_s} s");
+        // Tasks of 1.2 periods, one after another, until one tick in five is missed too often.
+        let long = faulty(image, Fault::LongTasks);
+        assert_eq!(end(&long), (Mode::Safe, Stop::TickOverrun), "{rate_hz} Hz");
+        let since = long
+            .ticks
+            .iter()
+            .skip_while(|tick| (tick.at_ns as f64) < SETTLED_S * 1e9);
+        let starts: Vec<_> = since
+            .map(|tick| tick.at_ns as f64 * 1e-9 / period_s)
+            .collect();
+        for pair in starts[1..6].windows(2) {
+            let periods = pair[1] - pair[0];
+            assert!((periods - 1.2).abs() < 0.05, "{rate_hz} Hz: {periods}");
+        }
         let halt = faulty(image, Fault::Halt(5));
         assert_eq!(end(&halt), (Mode::Safe, Stop::TickOverrun), "{rate_hz} Hz");
     }

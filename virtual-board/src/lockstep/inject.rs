@@ -10,7 +10,6 @@ use super::{COUNTERS, Lockstep};
 use crate::board::{ControllerBoard, Part};
 use crate::fault::Fault;
 use crate::quadrature::{LARGE, SMALL};
-use crate::run::RATE_HZ;
 
 /// Control register of the control tick's timer, TIM5.
 const TICK_CONTROL: u64 = 0x4000_0C00;
@@ -34,8 +33,8 @@ const RISEN_V: f64 = 31.0;
 
 /// Time for which a glitch opens the interlock loop, ns.
 const GLITCH_NS: u64 = 20_000;
-/// Duration of a control task that is too long, ns.
-const LONG_TASK_NS: u64 = (1.2e9 / RATE_HZ) as u64;
+/// Duration of a control task that is too long, periods.
+const LONG_TASK: f64 = 1.2;
 /// Time in which every control task is too long, ns.
 const LONG_TASKS_NS: u64 = 10_000_000;
 /// Time for which the task of lowest priority loops, ns.
@@ -54,8 +53,10 @@ pub(super) struct Stalls {
     halted: Vec<(u64, u64)>,
     /// Whether a debugger has frozen the watchdog.
     pub(super) frozen: bool,
-    /// Time until which every control task is too long.
-    long_tasks: u64,
+    /// Whether the core does not continue at the end of any of these times.
+    for_ever: bool,
+    /// Time until which every control task is too long, and its duration.
+    long_tasks: (u64, u64),
     /// Time for which the task of lowest priority is to loop after its next wake.
     hang: Option<u64>,
     /// Time at which the task of lowest priority continues.
@@ -69,6 +70,19 @@ impl Stalls {
     pub(super) fn next(&self) -> u64 {
         let times = [self.release, self.flash].into_iter().flatten();
         times.min().unwrap_or(u64::MAX)
+    }
+
+    /// Halts the core by a debugger, if it is not halted already.
+    fn halt(&mut self, part: &mut Part, at: VirtualNanos) {
+        if self.halted.is_empty() {
+            self.halted = halt(part, at);
+        }
+    }
+
+    /// Halts the core by a debugger that freezes the watchdog, until a reset.
+    fn freeze(&mut self, part: &mut Part, at: VirtualNanos) {
+        (self.frozen, self.for_ever) = (true, true);
+        self.halt(part, at);
     }
 }
 
@@ -102,26 +116,31 @@ impl Lockstep {
             Fault::BrokenMonitorWire => self.amplifiers.each[LARGE].monitor_cut = true,
             Fault::SupplyDrop => self.supply_v = DROPPED_V,
             Fault::SupplyRise => self.supply_v = RISEN_V,
-            Fault::EmergencyStop => self.amplifiers.stop_until_ns = u64::MAX,
-            Fault::InterlockGlitch => self.amplifiers.stop_until_ns = at.0 + GLITCH_NS,
-            Fault::HungCore => host.hold(true),
+            Fault::EmergencyStop => self.amplifiers.stop_until(u64::MAX),
+            Fault::InterlockGlitch => self.amplifiers.stop_until(at.0 + GLITCH_NS),
+            Fault::HungCore => {
+                host.hold(true);
+                self.stalls.for_ever = true;
+            }
             Fault::Halt(ms) => {
                 host.hold(true);
-                self.stalls.release = Some(at.0 + 1_000_000 * u64::from(ms));
-                self.stalls.halted = halt(part, at);
+                let release = at.0 + 1_000_000 * u64::from(ms);
+                self.stalls.release = self.stalls.release.max(Some(release));
+                self.stalls.halt(part, at);
             }
             Fault::FrozenHalt => {
                 host.hold(true);
-                self.stalls.frozen = true;
-                self.stalls.halted = halt(part, at);
+                self.stalls.freeze(part, at);
             }
             Fault::FrozenHaltTimerOn => {
                 host.hold(true);
-                self.stalls.frozen = true;
                 change(part, at, HALT_CONTROL, |bits| bits & !STOPS_TIM8);
-                self.stalls.halted = halt(part, at);
+                self.stalls.freeze(part, at);
             }
-            Fault::LongTasks => self.stalls.long_tasks = at.0 + LONG_TASKS_NS,
+            Fault::LongTasks => {
+                let task_ns = (LONG_TASK * self.recorded.period_ns()) as u64;
+                self.stalls.long_tasks = (at.0 + LONG_TASKS_NS, task_ns);
+            }
             Fault::HungControl => {
                 change(part, at, TICK_CONTROL, |_| 0);
             }
@@ -137,8 +156,8 @@ impl Lockstep {
             Fault::CrystalFails => part.stm32.drive_clocks(at, |rcc, registers, context| {
                 rcc.fail_hse(registers, context);
             }),
-            Fault::NobodyDrains => self.probe.drains_from = u64::MAX,
-            Fault::DrainPause => self.probe.drains_from = at.0 + PAUSE_NS,
+            Fault::NobodyDrains => self.probe.pause_until(u64::MAX),
+            Fault::DrainPause => self.probe.pause_until(at.0 + PAUSE_NS),
             Fault::CommandFlood => self.probe.floods = true,
             Fault::BrownOut => {
                 part.brown_out = true;
@@ -157,11 +176,14 @@ impl Lockstep {
         if self.stalls.flash.take_if(|over| *over <= at.0).is_some()
             && self.stalls.release.is_none()
         {
-            host.hold(false);
+            host.hold(self.stalls.for_ever);
         }
         if self.stalls.release.is_some_and(|release| release <= at.0) {
             self.stalls.release = None;
-            host.hold(false);
+            host.hold(self.stalls.for_ever);
+            if self.stalls.for_ever {
+                return;
+            }
             let part = &mut session.board_mut().part;
             for (register, value) in self.stalls.halted.drain(..) {
                 // A write to an existing register cannot fail.
@@ -183,9 +205,10 @@ impl Lockstep {
         let (Some((tick, _)), Some(last)) = (&self.running, self.recorded.ticks.last()) else {
             return;
         };
-        if at.0 < self.stalls.long_tasks && self.stalls.release.is_none() {
+        let (until, task_ns) = self.stalls.long_tasks;
+        if at.0 < until && self.stalls.release.is_none() {
             let own_ns = (f64::from(last.instructions) * self.instruction_ns) as u64;
-            self.stalls.release = Some(tick.at_ns + LONG_TASK_NS.saturating_sub(own_ns));
+            self.stalls.release = Some(tick.at_ns + task_ns.saturating_sub(own_ns));
             host.hold(true);
         }
     }
