@@ -84,7 +84,7 @@ def _shard(program: str | None, command: Sequence[str], part: str, folder: str) 
     return _written(program, command, part, folder, get_worker().local_directory)
 
 
-#: The last part of the largest number of parts: it has no job, and its file has the settings of the run alone.
+#: The last part of the largest number of parts: it has one job at most, and its file the settings of the run.
 _EMPTY = "1000000/1000000"
 
 

@@ -30,10 +30,10 @@ const QUANTITIES: [(&str, Quantity); 3] = [
     ("oscillation", |ran| 1e3 * ran.oscillation_nm.unwrap_or(0.0)),
 ];
 
-/// Runs of every scene at this rate: the corners and so many drawn devices.
 /// Drawn devices of a scene in the documented run.
 const DRAWN: u64 = 1000;
 
+/// Runs of every scene at this rate: the corners and so many drawn devices.
 fn robustness(rate_hz: f64, devices: u64) -> Vec<RobustRow> {
     let device = Device::default();
     let kind = Kind::named("kalman-triple-steady").unwrap();

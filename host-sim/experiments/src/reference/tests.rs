@@ -217,6 +217,46 @@ fn uneven_rows_and_any_start_of_the_counts_are_taken_exactly() {
     assert!(uneven.rms_sd(1e3) > even.rms_sd(1e3));
 }
 
+/// A sensor that is noisier than its counts informs alike in every row, whatever the motion.
+#[test]
+fn bandwidth_is_where_the_reference_halves_a_motion() {
+    let noises = Noises {
+        jerk: 4e11,
+        sensor: 100.0,
+    };
+    const AMPLITUDE: f64 = 1e4;
+    const ROWS: usize = 6000;
+    let sine = |hz: f64| {
+        let mut recording = synthetic(ROWS, 1);
+        let count = |k: usize| (AMPLITUDE * (TAU * hz * k as f64 * 1e-3).sin()).floor();
+        recording.trace.counts_large = (0..ROWS).map(|k| count(k) as i64 as u32).collect();
+        recording.trace.edges = None;
+        recording
+    };
+    let still = Reference::with(&sine(0.0), 4096, noises);
+    // w0^6 is the density of the jerk times the information of a second.
+    let corner_hz = f64::powf(4e11 * 1e3 / (100.0 + 1.0 / 12.0), 1.0 / 6.0) / TAU;
+    let off = still.bandwidth_hz / corner_hz - 1.0;
+    assert!(off.abs() < 0.01, "{} Hz", still.bandwidth_hz);
+    let pieces = Reference::in_pieces(&sine(0.0), 4096, noises, 1000, 700);
+    let off = pieces.bandwidth_hz / still.bandwidth_hz - 1.0;
+    assert!(off.abs() < 0.01, "{} Hz in pieces", pieces.bandwidth_hz);
+    // The part of the motion's velocity that is left, away from both ends.
+    let gain = |hz: f64| {
+        let reference = Reference::with(&sine(hz), 4096, noises);
+        let rows = 1000..5000;
+        let cosine = |k: usize| (TAU * hz * k as f64 * 1e-3).cos();
+        let along: f64 = rows.clone().map(|k| reference.omega[k] * cosine(k)).sum();
+        let whole: f64 = rows.map(|k| cosine(k).powi(2)).sum();
+        along / whole / (AMPLITUDE * TAU * hz * TAU / 4096.0)
+    };
+    let gains = [0.5, 1.0, 2.0].map(|part| gain(part * corner_hz));
+    // 1 / (1 + (w / w0)^6)
+    for (gain, expected) in gains.into_iter().zip([64.0 / 65.0, 0.5, 1.0 / 65.0]) {
+        assert!((gain - expected).abs() < 0.01, "{gains:?}");
+    }
+}
+
 #[test]
 fn recording_that_determines_no_noise_is_refused() {
     let mut still = synthetic(200, 1);

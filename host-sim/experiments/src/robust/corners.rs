@@ -114,6 +114,79 @@ mod tests {
     use crate::robust::variation::Subject;
     use simulation::device::Device;
 
+    /// The device that a name says: one value at a limit of its range.
+    #[test]
+    fn corner_of_one_value_has_it_at_its_limit() {
+        type Value = fn(&mut Variation) -> &mut f64;
+        let ranges: [(&str, Value, f64, f64); 6] = [
+            ("large-inertia", |v| &mut v.large_inertia, 0.7, 1.3),
+            ("small-inertia", |v| &mut v.small_inertia, 0.7, 1.3),
+            ("large-constant", |v| &mut v.large_constant, 0.8, 1.2),
+            ("small-constant", |v| &mut v.small_constant, 0.8, 1.2),
+            ("large-friction", |v| &mut v.large_friction, 0.6, 1.5),
+            ("small-friction", |v| &mut v.small_friction, 0.6, 1.5),
+        ];
+        let both = ranges.iter().flat_map(|&(name, value, low, high)| {
+            [
+                (format!("{name}-low"), value, low),
+                (format!("{name}-high"), value, high),
+            ]
+        });
+        let one: [(&str, Value, f64); 3] = [
+            ("damping-low", |v| &mut v.damping, 0.6),
+            ("amplifier-slow", |v| &mut v.amplifier, 0.5),
+            ("hand-stiff", |v| &mut v.hand, 4.0),
+        ];
+        let one = one.map(|(name, value, limit)| (name.to_owned(), value, limit));
+        for (name, value, limit) in both.chain(one) {
+            let mut expected = NOMINAL;
+            *value(&mut expected) = limit;
+            assert_eq!(named(&name), expected, "{name}");
+        }
+        assert_eq!(named("hand-gone").gone_rad_s, Some(3.0));
+        assert_eq!(named("tick-late").late_ticks, 1);
+        let disc = named("disc");
+        assert_eq!(
+            (disc.disc_phase, disc.disc_line, disc.disc_random),
+            (0.06, 0.25, 0.02)
+        );
+    }
+
+    /// The largest and the smallest acceleration per current, of both motors.
+    #[test]
+    fn worst_combinations_have_the_ratios_of_their_names() {
+        let ratios = |v: &Variation| {
+            [
+                v.large_constant / v.large_inertia,
+                v.small_constant / v.small_inertia,
+            ]
+        };
+        let frictions = |v: &Variation| [v.large_friction, v.small_friction];
+        for (name, ratio, friction) in [("agile", 1.2 / 0.7, 0.6), ("sluggish", 0.8 / 1.3, 1.5)] {
+            let of_name = corners()
+                .into_iter()
+                .filter(|(known, _)| known.starts_with(name));
+            for (known, corner) in of_name {
+                assert_eq!(ratios(&corner), [ratio; 2], "{known}");
+                assert_eq!(frictions(&corner), [friction; 2], "{known}");
+                assert_eq!((corner.amplifier, corner.late_ticks), (0.5, 1), "{known}");
+                let has = |part| known.contains(part);
+                assert_eq!(
+                    corner.damping,
+                    if has("thin") { 0.6 } else { 1.0 },
+                    "{known}"
+                );
+                assert_eq!(corner.hand, if has("stiff") { 4.0 } else { 1.0 }, "{known}");
+                assert_eq!(corner.gone_rad_s.is_some(), has("gone"), "{known}");
+            }
+        }
+    }
+
+    fn named(name: &str) -> Variation {
+        let found = corners().into_iter().find(|(known, _)| *known == name);
+        found.unwrap_or_else(|| panic!("no {name}")).1
+    }
+
     #[test]
     fn corners_reach_every_limit_and_are_valid_devices() {
         let corners = corners();

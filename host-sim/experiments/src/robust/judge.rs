@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use haptic_control::AnyScene;
 
 use super::high_pass::HighPass;
+use super::variation::CONSTANT;
 
 /// Largest allowed speed of the handle, rad/s: 2.1 m/s at the fingertip of the default handle, with
 /// an energy of 9 mJ, that of a small coin dropped from 15 cm. It is twice the monitor's limit over
@@ -19,8 +20,6 @@ pub const FELT_NM: f64 = 0.150;
 pub const OSCILLATION_NM: f64 = 1e-3;
 /// Lowest frequency of an oscillation of the loop, Hz; below it are the hand's motion and tremor.
 pub const OSCILLATION_HZ: f64 = 20.0;
-/// Largest factor of the torque constant, and so of a scene's vibration.
-const LARGEST_FACTOR: f64 = 1.2;
 
 /// Largest allowed residual oscillation of a scene, N.m RMS.
 ///
@@ -28,7 +27,8 @@ const LARGEST_FACTOR: f64 = 1.2;
 #[must_use]
 pub fn oscillation_limit_nm(scene: &AnyScene) -> f64 {
     let own = f64::from(scene.vibration().0);
-    OSCILLATION_NM + LARGEST_FACTOR * own / std::f64::consts::SQRT_2
+    // The vibration is as much too large as the torque constant.
+    OSCILLATION_NM + CONSTANT.1 * own / std::f64::consts::SQRT_2
 }
 
 /// One instant of a run.

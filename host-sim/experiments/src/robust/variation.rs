@@ -84,8 +84,9 @@ pub(super) const DISC: (f64, f64, f64) = (0.06, 0.25, 0.02);
 /// 15 steps of a converter with 2047 steps to the current limit, which an output that is not calibrated may
 /// be off by.
 pub(super) const ZERO: (f64, f64) = (-15.0 / 2047.0, 15.0 / 2047.0);
-/// Share of the devices with a free handle, and the handle's initial speed, rad/s.
+/// Share of the devices with a free handle.
 const GONE: f64 = 0.2;
+/// Initial speed of a free handle, rad/s.
 pub(super) const GONE_RAD_S: (f64, f64) = (0.5, 3.0);
 
 /// A device: a corner, or a drawn one.
@@ -264,9 +265,25 @@ mod tests {
         check(|v| v.hand, HAND);
         check(|v| v.large_zero, ZERO);
         check(|v| v.small_zero, ZERO);
+        check(|v| v.large_friction, FRICTION);
+        check(|v| v.small_friction, FRICTION);
+        check(|v| v.disc_phase, (0.0, DISC.0));
         check(|v| v.disc_line, (0.0, DISC.1));
+        check(|v| v.disc_random, (0.0, DISC.2));
         check(|v| v.late_ticks as f64, (0.0, 1.0));
-        let gone = draws.iter().filter(|v| v.gone_rad_s.is_some()).count();
-        assert!((340..460).contains(&gone), "{gone}");
+        let gone: Vec<_> = draws.iter().filter_map(|v| v.gone_rad_s).collect();
+        assert!((340..460).contains(&gone.len()), "{}", gone.len());
+        let away = gone.iter().filter(|omega| **omega > 0.0).count();
+        assert!((150..250).contains(&away), "{away}");
+        for omega in &gone {
+            assert!(
+                (GONE_RAD_S.0..=GONE_RAD_S.1).contains(&omega.abs()),
+                "{omega}"
+            );
+        }
+        let fastest = gone
+            .iter()
+            .fold(0.0_f64, |most, omega| most.max(omega.abs()));
+        assert!(fastest > 0.95 * GONE_RAD_S.1, "{fastest}");
     }
 }

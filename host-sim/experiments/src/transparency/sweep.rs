@@ -64,9 +64,14 @@ pub struct Swept {
     pub runs: Vec<(&'static str, Vec<Response>)>,
 }
 
-/// Lowest frequency at which the gain has fallen by 3 dB, Hz; `None` if it never falls so far.
+/// Lowest frequency at which the gain has fallen by 3 dB, Hz: the first one if it is below from there on. `None`
+/// if it never falls so far.
 #[must_use]
 pub fn bandwidth_hz(responses: &[Response]) -> Option<f64> {
+    let first = responses.first()?;
+    if first.gain < FRAC_1_SQRT_2 {
+        return Some(first.hz);
+    }
     let pair = responses
         .windows(2)
         .find(|pair| pair[0].gain >= FRAC_1_SQRT_2 && pair[1].gain < FRAC_1_SQRT_2)?;
@@ -234,5 +239,48 @@ impl<'a> SweepRig<'a> {
             }
         };
         self.lines.iter().map(of_line).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sines_of_a_sweep_have_the_threshold_of_a_fingertip_together() {
+        let device = Device::default();
+        for rate_hz in [1e3, 11_600.0] {
+            let rig = SweepRig::new(&device, rate_hz);
+            let wanted = rig.wanted();
+            let squares = wanted
+                .iter()
+                .map(|torque| (f64::from(*torque) - rig.bias).powi(2));
+            let rms = (squares.sum::<f64>() / wanted.len() as f64).sqrt();
+            let fingertip = Fingertip::new(&device);
+            let part = rms * fingertip.mn_per_nm / fingertip.threshold_mn;
+            assert!((part - 1.0).abs() < 1e-3, "{rate_hz} Hz: {part}");
+        }
+    }
+
+    #[test]
+    fn bandwidth_is_the_first_frequency_below_3_db() {
+        let of = |gains: &[f64]| {
+            let responses = gains.iter().enumerate().map(|(i, &gain)| Response {
+                hz: 10_f64.powi(i as i32),
+                gain,
+                phase_deg: 0.0,
+                coherence: 1.0,
+            });
+            bandwidth_hz(&responses.collect::<Vec<_>>())
+        };
+        assert_eq!(of(&[1.0, 0.9]), None);
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[0.6, 0.9, 0.6]), Some(1.0));
+        // Halfway between the gains, in the logarithm of the frequency.
+        let half = of(&[1.0, FRAC_1_SQRT_2 + 0.1, FRAC_1_SQRT_2 - 0.1, 0.9, 0.1]);
+        assert!(
+            (half.unwrap() / 10_f64.powf(1.5) - 1.0).abs() < 1e-9,
+            "{half:?}"
+        );
     }
 }
