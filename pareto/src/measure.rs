@@ -116,8 +116,10 @@ pub fn measure() -> Result<Vec<Row>, String> {
         for k in 0..rows.len() {
             let better = |other: &Row| {
                 !other.comparator
-                    && other.cost[0].mean < rows[k].cost[0].mean
+                    && other.cost[0].mean <= rows[k].cost[0].mean
                     && other.rms_rad_s[rate] <= rows[k].rms_rad_s[rate]
+                    && (other.cost[0].mean < rows[k].cost[0].mean
+                        || other.rms_rad_s[rate] < rows[k].rms_rad_s[rate])
             };
             rows[k].front[rate] = !rows[k].comparator && !rows.iter().any(better);
         }

@@ -260,6 +260,34 @@ mod tests {
     }
 
     #[test]
+    fn shaft_is_within_its_count_from_the_start_and_makes_no_edge_at_rest() {
+        let errors = Disc {
+            phase_counts: 0.3,
+            random_counts: 0.1,
+            ..Disc::default()
+        };
+        let mut moved = [0; 3];
+        for seed in 0..20 {
+            for phase in [0.02, 0.5, 0.98] {
+                let disc = DiscErrors::new(&errors, 4096, seed);
+                let mut encoder = Encoder::new(4096, 100, phase, 0.7, disc);
+                assert!(
+                    encoder.lower <= 0.7 && 0.7 < encoder.upper,
+                    "{seed} {phase}"
+                );
+                moved[(encoder.count() - 99) as usize] += 1;
+                let rest = |_| Pose {
+                    angle: 0.7,
+                    omega: 0.0,
+                };
+                assert_eq!(run(&mut encoder, 10e-6, 1, rest, |_, _| {}), []);
+            }
+        }
+        // The disc moves boundaries beyond the shaft in both directions.
+        assert!(moved.iter().all(|count| *count > 3), "{moved:?}");
+    }
+
+    #[test]
     fn disc_error_moves_each_boundary_and_repeats_every_turn() {
         let errors = Disc {
             phase_counts: 0.2,
