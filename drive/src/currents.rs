@@ -371,4 +371,24 @@ mod tests {
             }
         }
     }
+
+    /// Below a tenth of the strokes' current no motor turns.
+    #[test]
+    fn settings_have_to_allow_a_tenth_of_the_strokes() {
+        for (setting, channel) in [Setting::LimitLarge, Setting::LimitSmall]
+            .into_iter()
+            .zip(&CHANNELS)
+        {
+            let stroke = channel.stroke.get();
+            for (part, is_allowed) in [(0.11, true), (0.09, false)] {
+                let mut settings = Settings::COMMISSIONED;
+                assert!(settings.set(setting, part * stroke));
+                assert_eq!(
+                    allowed(&settings).is_ok(),
+                    is_allowed,
+                    "{setting:?}: {part}"
+                );
+            }
+        }
+    }
 }

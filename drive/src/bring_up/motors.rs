@@ -147,10 +147,33 @@ mod tests {
         ] {
             assert!(gain(wrong, 0.9).unwrap_err().contains(told), "{wrong}");
         }
-        assert!(gain(1000.0, 0.2).unwrap_err().contains("does not explain"));
+        // On either side of each bound, by the factor of the device file and the part that is explained.
+        let outcome = |result: Result<String, String>| match result {
+            Ok(text) if text.contains("identify") => "differs",
+            Ok(_) => "right",
+            Err(text) if text.contains("hardly turns") => "hardly",
+            Err(_) => "wrong",
+        };
+        for (ratio, expected) in [
+            (0.09, "hardly"),
+            (0.11, "wrong"),
+            (0.29, "wrong"),
+            (0.31, "differs"),
+            (0.69, "differs"),
+            (0.71, "right"),
+            (1.39, "right"),
+            (1.41, "differs"),
+            (2.9, "differs"),
+            (3.1, "wrong"),
+        ] {
+            assert_eq!(outcome(gain(1000.0 * ratio, 0.9)), expected, "{ratio}");
+        }
+        assert!(gain(1000.0, 0.49).unwrap_err().contains("does not explain"));
+        assert_eq!(outcome(gain(1000.0, 0.51)), "right");
         assert!(gained(None, 1000.0).is_err());
         let pull = |coupling| coupled(response(0.0, coupling, 1.0), 100.0);
-        assert!(pull(100.0).is_ok() && pull(-100.0).is_err() && pull(10.0).is_err());
+        assert!(pull(100.0).is_ok() && pull(-100.0).is_err());
+        assert!(pull(29.0).unwrap_err().contains("pull the handle") && pull(31.0).is_ok());
         assert!(pull(400.0).unwrap_err().contains("check"));
     }
 }
