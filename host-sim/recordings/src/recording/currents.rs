@@ -132,7 +132,8 @@ mod tests {
 
     #[test]
     fn measured_current_that_is_no_number_is_reported() {
-        let optional = "remove the rows without a value, or rename the column current_measured, which is optional";
+        let optional = "remove the rows without a value, or rename the column current_measured if the command does \
+                        without it";
         for (good, bad, line, remedy) in [
             ("1.5", "x", 3, "correct the field, or remove the row"),
             ("3.5", "nan", 5, optional),

@@ -35,7 +35,7 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
         word if is_without_value(word) || ["inf", "infinity"].contains(&word) => match is_needed {
             true => "remove the rows without a value".to_owned(),
             false => format!(
-                "remove the rows without a value, or rename the column {column}, which is optional"
+                "remove the rows without a value, or rename the column {column} if the command does without it"
             ),
         },
         hex if hex.starts_with("0x") => "it is hexadecimal: write it in decimal".to_owned(),
@@ -174,8 +174,8 @@ mod tests {
             ),
             (
                 "t,counts_large,current\n0,0,NaN\n",
-                "'NaN' is not a number; remove the rows without a value, or rename the column current, \
-                 which is optional",
+                "'NaN' is not a number; remove the rows without a value, or rename the column current \
+                 if the command does without it",
             ),
         ] {
             let error = Recording::parse(text.as_bytes(), "r.csv").unwrap_err();
