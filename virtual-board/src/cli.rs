@@ -243,7 +243,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let device = arguments
         .device
         .as_deref()
-        .map_or_else(|| Ok(Device::default()), Device::read)?;
+        .map_or_else(|| Ok(Device::default()), Device::read_to_simulate)?;
     let setup = Setup {
         hand: arguments.hand(&device),
         device,

@@ -183,8 +183,20 @@ impl Device {
     /// # Errors
     /// One line that names the line and the key, or the invalid value, and the valid ones.
     pub fn from_toml_str(text: &str) -> Result<Self, String> {
+        Self::checked(text, Self::check_values)
+    }
+
+    /// As [`Self::from_toml_str`], for a device that is simulated.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml_str`], and for a device whose time constants are too short for the plant's step.
+    pub fn from_toml_str_to_simulate(text: &str) -> Result<Self, String> {
+        Self::checked(text, Self::validate)
+    }
+
+    fn checked(text: &str, check: fn(&Self) -> Result<(), String>) -> Result<Self, String> {
         let device: Self = toml::from_str(text).map_err(|error| one_line(text, &error))?;
-        device.validate().map_err(|error| {
+        check(&device).map_err(|error| {
             let key = error.split([' ', ':']).next().unwrap_or("");
             at_line(
                 text,
@@ -204,6 +216,16 @@ impl Device {
         Self::from_toml_str(&text).map_err(|error| format!("{}: {error}", path.display()))
     }
 
+    /// Reads the file of a device that is simulated.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml_str_to_simulate`], with the file's name first.
+    pub fn read_to_simulate(path: &Path) -> Result<Self, String> {
+        let text = crate::text(path)?;
+        Self::from_toml_str_to_simulate(&text)
+            .map_err(|error| format!("{}: {error}", path.display()))
+    }
+
     /// Whether the text of a device file states the counts per revolution of the large encoder.
     #[must_use]
     pub fn states_counts(text: &str) -> bool {
@@ -212,12 +234,21 @@ impl Device {
         large.is_some_and(|large| large.get("counts_per_rev").is_some())
     }
 
-    /// Checks that every value is possible, and that the plant's step is short enough for it.
+    /// Checks that every value is possible.
     ///
     /// # Errors
     /// One line, for example `large.inertia_kg_m2 = -1: must be above 0 kg.m2`.
+    pub fn check_values(&self) -> Result<(), String> {
+        check::check_values(self)
+    }
+
+    /// Checks that the device can be simulated: every value is possible, and the plant's step is short enough.
+    ///
+    /// # Errors
+    /// As [`Self::check_values`], or one line that names the key which makes a time constant too short.
     pub fn validate(&self) -> Result<(), String> {
-        check::validate(self)
+        self.check_values()?;
+        rates::check_rates(self)
     }
 
     /// The device without the Coulomb friction of both motors, but with torque ripple.

@@ -290,7 +290,15 @@ impl DeviceFile {
     /// # Errors
     /// [`Failure::Input`] that names the file and the key.
     pub fn load(&self) -> Result<Device, Failure> {
-        self.device(&self.text()?)
+        self.device(&self.text()?, Device::from_toml_str)
+    }
+
+    /// As [`Self::load`], for a command that simulates the device.
+    ///
+    /// # Errors
+    /// As [`Self::load`], and for a device that the plant's step is too long for.
+    pub fn load_to_simulate(&self) -> Result<Device, Failure> {
+        self.device(&self.text()?, Device::from_toml_str_to_simulate)
     }
 
     /// As [`Self::load`], for recordings, which may state their counts per revolution.
@@ -300,16 +308,19 @@ impl DeviceFile {
     pub fn loaded(&self) -> Result<Loaded, Failure> {
         let text = self.text()?;
         Ok(Loaded {
-            device: self.device(&text)?,
+            device: self.device(&text, Device::from_toml_str)?,
             counts_of: Device::states_counts(&text).then(|| self.name()),
         })
     }
 
     /// The device of the file's text.
-    fn device(&self, text: &str) -> Result<Device, Failure> {
+    fn device(
+        &self,
+        text: &str,
+        read: fn(&str) -> Result<Device, String>,
+    ) -> Result<Device, Failure> {
         let name = self.device.as_deref().unwrap_or(Path::new(""));
-        Device::from_toml_str(text)
-            .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
+        read(text).map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
     }
 
     /// Whether a file was given.

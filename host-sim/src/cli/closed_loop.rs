@@ -164,7 +164,7 @@ pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
     let handle = handle(options.handle_estimator.as_deref())?;
     Ok(LoopSettings {
         common: Settings {
-            device: options.device.load()?,
+            device: options.device.load_to_simulate()?,
             estimators: estimators(&options.estimators, handle)?,
             parameters: options.parameters.load()?,
             wanted: wanted(&options.scores)?.0,

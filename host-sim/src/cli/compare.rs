@@ -129,7 +129,10 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let (wanted, asked_fields) = wanted(&options.scores)?;
     let report = report_folder(options)?;
     let (cases, asked) = cases(options, report.is_some())?;
-    let (device, parameters) = (options.device.load()?, options.parameters.load()?);
+    let (device, parameters) = (
+        options.device.load_to_simulate()?,
+        options.parameters.load()?,
+    );
     let settings = settings(&options.estimators, &cases, device, parameters, wanted)?;
     let bar = progress(cases.len(), "simulating");
     let outcomes = compare(&cases, &settings, &|| bar.inc(1))?;

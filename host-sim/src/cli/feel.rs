@@ -76,7 +76,7 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     let handle = closed_loop::handle(options.handle_estimator.as_deref())?;
     let estimators = closed_loop::estimators(&options.estimators, handle)?;
     let settings = Settings {
-        device: options.device.load()?,
+        device: options.device.load_to_simulate()?,
         parameters: options.parameters.load()?,
         handle,
         seed: options.seed,

@@ -63,7 +63,10 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
             keep: false,
         }));
     }
-    let (device, parameters) = (options.device.load()?, options.parameters.load()?);
+    let (device, parameters) = (
+        options.device.load_to_simulate()?,
+        options.parameters.load()?,
+    );
     let settings = settings(
         &options.estimators,
         &cases,

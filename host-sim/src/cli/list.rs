@@ -8,7 +8,7 @@ use device_files::decimal;
 use recordings::arguments::DeviceFile;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
-use terminal::output::print_bytes;
+use terminal::output::{note, print_bytes};
 use terminal::wording::wrapped;
 
 /// Names, parameters and needs of the estimators.
@@ -86,7 +86,14 @@ pub(super) fn scenarios() -> Result<(), Failure> {
 
 /// All values of a device.
 pub(super) fn device(file: &DeviceFile) -> Result<(), Failure> {
-    let text = toml::to_string(&file.load()?)
-        .map_err(|error| Failure::Input(format!("device: {error}")))?;
+    let device = file.load()?;
+    if let Err(why) = device.validate() {
+        note(format!(
+            "{}: commands that simulate refuse this device: {why}",
+            file.name()
+        ));
+    }
+    let text =
+        toml::to_string(&device).map_err(|error| Failure::Input(format!("device: {error}")))?;
     print_bytes(text.as_bytes())
 }

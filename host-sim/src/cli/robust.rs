@@ -106,7 +106,7 @@ fn no_device(index: u64, devices: u64) -> String {
 
 fn settings(options: &Robust) -> Result<Settings, Failure> {
     let kind = Kind::named(&options.estimator)?;
-    let device = options.device.load()?;
+    let device = options.device.load_to_simulate()?;
     let parameters = options.parameters.load()?;
     Ok(Settings {
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -102,7 +102,7 @@ pub(super) fn finish(
 
 fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
-    let device = options.device.load()?;
+    let device = options.device.load_to_simulate()?;
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3]);
     check_rates(&rates_hz, options.seconds)?;

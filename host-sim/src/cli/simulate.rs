@@ -69,7 +69,7 @@ pub(super) struct Simulate {
 
 pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
     let run = Run {
-        device: options.device.load()?,
+        device: options.device.load_to_simulate()?,
         rate_hz: options.rate,
         seconds: options.seconds,
         seed: options.seed,

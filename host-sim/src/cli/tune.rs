@@ -89,7 +89,7 @@ impl Tune {
         let rates_hz = distinct(&self.rates, &[1e3, 10e3, 11.6e3]);
         check_rates(&rates_hz, self.seconds)?;
         Ok(Plan {
-            device: self.device.load()?,
+            device: self.device.load_to_simulate()?,
             groups: wishes.groups(kinds),
             rates_hz,
             plants: match self.frictionless {

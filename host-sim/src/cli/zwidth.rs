@@ -127,7 +127,7 @@ fn own_lines(device: &Device, given: &[u32]) -> u32 {
 
 /// All combinations of rate, encoder and estimator, in the order of the table.
 fn plan(options: &Zwidth) -> Result<Plan, Failure> {
-    let device = options.device.load()?;
+    let device = options.device.load_to_simulate()?;
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3, 10e3, 11.6e3]);
     for &rate_hz in &rates_hz {

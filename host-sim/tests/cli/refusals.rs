@@ -138,3 +138,38 @@ fn control_characters_of_files_do_not_reach_the_terminal() {
         assert!(!line.trim_end().contains(char::is_control), "{line:?}");
     }
 }
+
+/// A damping in mN.m.s/rad makes the coupler too stiff for the step of the plant, which not every command has.
+#[test]
+fn stiff_device_is_refused_only_by_commands_that_simulate_it() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("stiff.toml", "[coupler]\ndamping_nms_per_rad = 0.96\n");
+    let said = "stiff.toml: line 2, coupler.damping_nms_per_rad = 0.96: too large: the large motor settles in 1.2e-5 \
+                s, but the simulation needs 1e-4 s or more; did you mean 0.96e-3, which is 0.96 mN.m.s/rad?";
+    for command in [
+        "compare",
+        "limit",
+        "feel",
+        "zwidth",
+        "robust",
+        "sensitivity",
+        "tune",
+    ] {
+        let refused = folder.refused(&[command, "--device", "stiff.toml"]);
+        assert!(refused.contains(said), "{command}: {refused}");
+    }
+    folder.good("simulate --scenario step --rate 1000 --seconds 1 --out log.csv");
+    for arguments in [
+        &["replay", "log.csv", "--estimator", "pll"][..],
+        &["recommend", "log.csv"],
+        &["plot", "log.csv", "--out", "log.svg"],
+        &["export", "--c", "--estimator", "pll"],
+    ] {
+        folder.good(&[arguments, &["--device", "stiff.toml"]].concat());
+    }
+    let (_, notes) = folder.ends(0, "device --device stiff.toml");
+    assert!(
+        notes.contains("stiff.toml: commands that simulate refuse this device: coupler.damping_nms_per_rad = 0.96"),
+        "{notes}"
+    );
+}

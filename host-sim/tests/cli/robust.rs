@@ -72,7 +72,7 @@ fn corner_beyond_a_limit_is_limited_and_named() {
         (
             "hand.damping_nms_per_rad = 0.009",
             "agile-stiff",
-            "in place of 0.7, because of small.inertia_kg_m2 = ",
+            "in place of 0.7, because of hand.damping_nms_per_rad = 0.036: too large",
         ),
     ] {
         folder.write("d.toml", device);

@@ -62,11 +62,8 @@ impl Known {
             Self::Inertia(_) => device.stages.large.inertia = value,
             Self::Damping(_) => device.stages.damping = value,
         }
-        match device.validate() {
-            // The other constants are identified.
-            Err(error) if error.starts_with(key) && !error.contains(": too small") => {
-                Err(format!("--known {error}"))
-            }
+        match device.check_values() {
+            Err(error) if error.starts_with(key) => Err(format!("--known {error}")),
             _ => Ok(()),
         }
     }
