@@ -175,3 +175,16 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
     let errors = folder.refused(&words(&format!("identify {motor} --clamped")));
     assert!(errors.contains("no column current"), "{errors}");
 }
+
+/// Constants that a coarse encoder of the handle leaves open; the intervals of the jackknife alone are below 2 %.
+#[test]
+fn coarse_handle_encoder_is_named_as_the_cause_of_wide_intervals() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("coarse.toml", "[small]\ncounts_per_rev = 300\n");
+    folder.good("simulate --device coarse.toml --every 10 --out excite.csv");
+    let table = folder.good("identify excite.csv --device coarse.toml");
+    let table: Vec<_> = table.split_whitespace().collect();
+    let said =
+        "the encoders are too coarse for it: clamp the handle, or give its encoder more counts";
+    assert!(table.join(" ").contains(said), "{table:?}");
+}

@@ -102,6 +102,7 @@ mod tests {
             estimate: Estimate {
                 value,
                 half: 0.01 * value,
+                by_counts: false,
             },
             file: value,
             unit: super::super::quantity::MILLI_NM,

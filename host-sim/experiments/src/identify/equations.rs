@@ -85,6 +85,8 @@ impl Equations {
                     response: window.response,
                     drive: window.drive,
                     others,
+                    other_moved: window.other_moved,
+                    halved: window.halved,
                 });
             }
         }
@@ -97,6 +99,8 @@ struct Window {
     drive: [f64; super::test_function::LAG_TERMS],
     shared: Vec<f64>,
     ripple: [f64; RIPPLES],
+    other_moved: f64,
+    halved: Vec<f64>,
 }
 
 impl Shaft<'_> {
@@ -129,9 +133,14 @@ impl Shaft<'_> {
         };
         let moved = |j: usize| angle[j] - origin;
         let mut shared = vec![sum(&phi.first, &slip), -way, 1.0];
+        let odd = |j: usize| self.own.odd(start + j);
+        let odd_slip = |j: usize| odd(j) - self.other.map_or(0.0, |o| o.odd(start + j));
+        let mut halved = vec![sum(&phi.second, &odd), sum(&phi.first, &odd_slip), 0.0, 0.0];
         if self.hand {
             shared.push(-sum(&phi.weight, &|j| angle[j]));
             shared.push(sum(&phi.first, &moved));
+            halved.push(-sum(&phi.weight, &odd));
+            halved.push(sum(&phi.first, &odd));
         }
         let middle = |j: usize| 0.5 * (angle[j] + angle[j + 1]) * self.ripple_per_rev;
         Some(Window {
@@ -149,6 +158,8 @@ impl Shaft<'_> {
                 sum(&phi.first, &|j| angle[j].sin()),
                 sum(&phi.first, &|j| angle[j].cos()),
             ],
+            other_moved: sum(&phi.first, &|j| moved(j) - slip(j)),
+            halved,
         })
     }
 }

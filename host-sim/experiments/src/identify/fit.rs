@@ -9,6 +9,25 @@ pub(super) struct Equation {
     /// The integral of the current by powers of the lag.
     pub(super) drive: [f64; LAG_TERMS],
     pub(super) others: Vec<f64>,
+    /// The displacement of the other shaft, as the slip has it.
+    pub(super) other_moved: f64,
+    /// Change of the response and of the first of the others, if the counts of both encoders were read at half their
+    /// resolution.
+    pub(super) halved: Vec<f64>,
+}
+
+impl Equation {
+    /// The equation from counts at half the resolution. The two phases of the halving, signs 1 and -1, have opposite
+    /// changes.
+    fn halved(&self, sign: f64) -> Self {
+        let mut equation = self.clone();
+        let (response, others) = self.halved.split_first().unwrap_or((&0.0, &[]));
+        equation.response += sign * response;
+        for (value, change) in equation.others.iter_mut().zip(others) {
+            *value += sign * change;
+        }
+        equation
+    }
 }
 
 /// Coefficients, coefficients without each block of equations, and the residual.
@@ -23,6 +42,8 @@ pub(super) struct Fit {
     /// RMS of the drive's part of the response.
     pub(super) driven: f64,
     without: Vec<(Vec<f64>, f64)>,
+    /// The fits of both phases of the counts at half their resolution.
+    halved: [(Vec<f64>, f64); 2],
 }
 
 /// A value and the half-width of its 95 % interval.
@@ -32,6 +53,8 @@ pub struct Estimate {
     pub value: f64,
     /// Half the width of its interval.
     pub half: f64,
+    /// Whether the interval is wide mainly by the quantisation of the encoders.
+    pub by_counts: bool,
 }
 
 /// Number of blocks of the jackknife.
@@ -46,13 +69,7 @@ impl Fit {
         if equations.len() < 2 * BLOCKS.max(columns) {
             return None;
         }
-        let mut lag_s = 0.0;
-        let mut drive = 0.0;
-        for _ in 0..STEPS {
-            let solution = Normal::of(equations, lag_s, drive).solve();
-            drive = solution[0];
-            lag_s += solution[1];
-        }
+        let (lag_s, drive) = converged(equations);
         // Neighbouring windows have correlated residuals, so whole blocks are left out.
         let blocks: Vec<Normal> = (0..BLOCKS)
             .map(|b| {
@@ -62,11 +79,12 @@ impl Fit {
             .collect();
         let mut all = Normal::new(columns);
         blocks.iter().for_each(|block| all.add(block, 1.0));
-        let split = |solution: Vec<f64>| {
-            let mut coefficients = solution;
-            let step = coefficients.remove(1);
-            (coefficients, lag_s + step)
-        };
+        let split = |solution| split(solution, lag_s);
+        let halved = [1.0, -1.0].map(|sign| {
+            let equations: Vec<_> = equations.iter().map(|e| e.halved(sign)).collect();
+            let (lag_s, drive) = converged(&equations);
+            super::fit::split(Normal::of(&equations, lag_s, drive).solve(), lag_s)
+        });
         let without = blocks.iter().map(|block| {
             let mut rest = all.clone();
             rest.add(block, -1.0);
@@ -89,22 +107,48 @@ impl Fit {
             coefficients,
             lag_s,
             without,
+            halved,
         })
     }
 
     /// A function of coefficients and lag with its interval: jackknife over the blocks with the factor
-    /// of Student's distribution.
+    /// of Student's distribution, and the bias by quantisation. Noise of a column biases its coefficient by the
+    /// variance of the noise, and every block equally. Counts at half the resolution have a further error of half a
+    /// count, of three times the variance; the mean of both phases of the halving cancels what is linear in it.
     pub(super) fn estimate(&self, f: impl Fn(&[f64], f64) -> f64) -> Estimate {
         let count = self.without.len() as f64;
         let values = self.without.iter().map(|(c, lag)| f(c, *lag));
         let values: Vec<f64> = values.collect();
         let mean = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+        let value = f(&self.coefficients, self.lag_s);
+        let [one, other] = [0, 1].map(|k| f(&self.halved[k].0, self.halved[k].1));
+        let bias = 0.5 * (one + other) - value;
+        let spread = student(count - 1.0) * (squares * (count - 1.0) / count).sqrt();
         Estimate {
-            value: f(&self.coefficients, self.lag_s),
-            half: student(count - 1.0) * (squares * (count - 1.0) / count).sqrt(),
+            value,
+            half: spread.hypot(bias),
+            by_counts: bias.abs() > spread,
         }
     }
+}
+
+/// Lag and coefficient of the drive by Gauss-Newton steps.
+fn converged(equations: &[Equation]) -> (f64, f64) {
+    let (mut lag_s, mut drive) = (0.0, 0.0);
+    for _ in 0..STEPS {
+        let solution = Normal::of(equations, lag_s, drive).solve();
+        drive = solution[0];
+        lag_s += solution[1];
+    }
+    (lag_s, drive)
+}
+
+/// The coefficients of a solution without the lag's step, and the lag after the step.
+fn split(solution: Vec<f64>, lag_s: f64) -> (Vec<f64>, f64) {
+    let mut coefficients = solution;
+    let step = coefficients.remove(1);
+    (coefficients, lag_s + step)
 }
 
 /// The drive at a lag, and its derivative with respect to the lag. A first-order lag is the series

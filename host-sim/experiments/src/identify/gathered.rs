@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::equations::{Equations, Shaft, TURNS, half_window};
+use super::equations::{Equations, SLIP, Shaft, TURNS, half_window};
 use super::fit::{Equation, Fit};
 use super::motion::Motion;
 use super::{MOST_UNEXPLAINED, WINDOW_S, breaks, handle, quantity};
@@ -178,6 +178,9 @@ impl Gathered {
                     .to_owned(),
             );
         }
+        if !backward && let Some(why) = self.handle_is_reversed() {
+            return Err(why);
+        }
         // NaN is an error too.
         if unexplained.is_nan() || unexplained >= REFUSED_UNEXPLAINED || backward {
             return Err(format!(
@@ -211,6 +214,24 @@ impl Gathered {
             ));
         }
         Ok(fit)
+    }
+
+    /// What is wrong if the coupler's torque follows the motion of the handle with the wrong sign. The share of that
+    /// motion which the slip has too much is 0, and 2 if the handle's encoder counts in the other direction.
+    fn handle_is_reversed(&self) -> Option<String> {
+        let mut equations = self.large.usable.clone();
+        for equation in &mut equations {
+            equation.others.push(equation.other_moved);
+        }
+        let column = equations.first()?.others.len();
+        let fit = Fit::new(&equations)?;
+        let share = fit.estimate(|ratios, _| ratios[column] / ratios[SLIP]);
+        (share.value - share.half > 1.0).then(|| {
+            "column counts_small counts against column counts_large: the torque of the coupler follows the sum of \
+             both speeds, not their difference; negate column counts_small, or exchange A and B of the handle's \
+             encoder"
+                .to_owned()
+        })
     }
 
     /// Reason for which no value of the fit is identified, if a torque acts that is not in the model.

@@ -27,6 +27,7 @@ pub(super) fn free(equations: Equations) -> Result<Vec<Equation>, &'static str> 
         // with it b/J from that motor's velocity. The sum of both columns is b/J from the handle's
         // velocity.
         equation.others.remove(HAND - 1);
+        equation.halved.remove(HAND);
     }
     Ok(usable)
 }
@@ -47,6 +48,7 @@ pub(super) fn quantities(
         Estimate {
             value: ratio.value * damping.value,
             half: parts[0].hypot(parts[1]),
+            by_counts: ratio.by_counts,
         }
     };
     let mut friction = Quantity::new(

@@ -14,6 +14,7 @@ pub(super) struct Motion {
     pub(super) angle: Vec<f64>,
     /// Direction: -1 or 1, or 0 if it is uncertain.
     pub(super) direction: Vec<i8>,
+    rad_per_count: f64,
 }
 
 impl Motion {
@@ -54,7 +55,17 @@ impl Motion {
                 (slope * per_sure).clamp(-1.0, 1.0) as i8
             })
             .collect();
-        Self { angle, direction }
+        Self {
+            angle,
+            direction,
+            rad_per_count,
+        }
+    }
+
+    /// The change of the angle of this sample, if the counter had no lowest bit, rad.
+    pub(super) fn odd(&self, sample: usize) -> f64 {
+        let place = (self.angle[sample] / self.rad_per_count).round() as i64;
+        -((place & 1) as f64) * self.rad_per_count
     }
 
     /// The smallest and largest mean velocity over windows of `window_s`, rad/s, with those of `before`.

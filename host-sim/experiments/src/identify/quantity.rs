@@ -153,6 +153,12 @@ impl Quantity {
         remedy: &str,
     ) -> Self {
         let width = estimate.half / estimate.value.abs().max(least);
+        let remedy = match estimate.by_counts {
+            true => {
+                "the encoders are too coarse for it: clamp the handle, or give its encoder more counts"
+            }
+            false => remedy,
+        };
         let vague = (width.is_nan() || width > IDENTIFIED).then(|| match 100.0 * width {
             percent if percent < 1000.0 => {
                 format!("an interval of +-{percent:.1} % is too wide; {remedy}")
@@ -192,13 +198,13 @@ impl Quantity {
     /// it.
     #[must_use]
     pub fn is_told(&self) -> bool {
-        let Estimate { value, half } = self.estimate;
+        let Estimate { value, half, .. } = self.estimate;
         self.rejected.is_none() || self.vague && half < TOLD * value.abs()
     }
 
     /// Half-width of the interval as text, in % of the value if it is below 10 %.
     pub(super) fn half_text(&self) -> String {
-        let Estimate { value, half } = self.estimate;
+        let Estimate { value, half, .. } = self.estimate;
         if half < 0.1 * value.abs() {
             return format!("+-{} %", digits(100.0 * half / value.abs()));
         }

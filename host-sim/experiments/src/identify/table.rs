@@ -53,7 +53,7 @@ pub fn text(found: &Identification) -> String {
         "Counts and current alone determine, without a known constant:"
     );
     for ratio in &found.ratios {
-        let Estimate { value, half } = ratio.estimate;
+        let Estimate { value, half, .. } = ratio.estimate;
         let _ = writeln!(
             text,
             "{:<42}{value:>10.4e}  {:<10}+-{half:.1e}",

@@ -14,7 +14,7 @@ use recordings::recording::Recording;
 use simulation::device::Device;
 
 /// A device whose constants are up to 30 % (friction, amplifier 50 %) off, on a real disc.
-fn device(seed: u64) -> Device {
+pub(super) fn device(seed: u64) -> Device {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut factor = |spread: f64| {
         let unit = (random.next_u64() >> 11) as f64 * 0.5_f64.powi(53);
@@ -36,7 +36,7 @@ fn device(seed: u64) -> Device {
 }
 
 /// The excitation of that device at 10 kHz, all rows or each `every`-th.
-fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
+pub(super) fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
     let kind = Kind::named("kalman-triple-steady").unwrap();
     let parameters = Parameters::default();
     let estimator = |counts| estimator(kind, device, counts, 10e3, &parameters).unwrap();
@@ -57,18 +57,28 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
     run.record(165_000, every).unwrap()
 }
 
-fn torque_constant(device: &Device) -> Known {
+pub(super) fn torque_constant(device: &Device) -> Known {
     Known::TorqueConstant(device.stages.large.torque_constant)
 }
 
-/// Identified against a device file that says something else.
+/// Against a device file that says something else.
 fn found(recordings: Vec<Recording>, known: Known) -> Result<Identification, String> {
-    let named = recordings.into_iter().map(|r| ("r.csv".to_owned(), r));
-    let named: Vec<_> = named.collect();
-    identify(&named, &[], &Device::default(), known, false).map_err(|failure| failure.to_string())
+    found_against(&Device::default(), recordings, known)
 }
 
-fn truth(device: &Device, key: &str) -> f64 {
+pub(super) fn found_against(
+    file: &Device,
+    recordings: Vec<Recording>,
+    known: Known,
+) -> Result<Identification, String> {
+    let named: Vec<_> = recordings
+        .into_iter()
+        .map(|r| ("r.csv".to_owned(), r))
+        .collect();
+    identify(&named, &[], file, known, false).map_err(|failure| failure.to_string())
+}
+
+pub(super) fn truth(device: &Device, key: &str) -> f64 {
     match key {
         "large.inertia_kg_m2" => device.stages.large.inertia,
         "large.torque_constant_nm_per_a" => device.stages.large.torque_constant,

@@ -9,5 +9,6 @@ mod closed_loop;
 mod confidence;
 mod encoder_faults;
 mod identify;
+mod identify_encoders;
 mod reference;
 mod scaled_presets;
