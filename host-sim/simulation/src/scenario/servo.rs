@@ -13,10 +13,15 @@ use std::f64::consts::TAU;
 /// Cut-off of the low-pass on measured velocities, Hz.
 const CUTOFF_HZ: f64 = 150.0;
 
+/// Largest proportional gain, relative to the inertia over a period. At 2 an error returns with the opposite sign and
+/// its full size; the delay of the measured velocity and the integral action lower that limit.
+const LARGEST_GAIN: f64 = 1.0;
+
 /// Parameters of a loop.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tuning {
-    /// Bandwidth of the slip loop, Hz. It is well below [`CUTOFF_HZ`] and the control rate.
+    /// Bandwidth of the slip loop, Hz, below [`CUTOFF_HZ`]. It is lower where the control rate is below 2 pi times
+    /// this bandwidth.
     pub(super) bandwidth_hz: f64,
     /// Integral gain: rate at which an error of the slip angle decreases, 1/s.
     pub(super) integral_per_s: f64,
@@ -62,7 +67,8 @@ impl Servo {
             amps_per_nm_small: 1.0 / device.stages.small.torque_constant,
             rad_per_reference: TAU / f64::from(device.reference.counts_per_rev),
             rad_per_small: TAU / f64::from(device.stages.small.counts_per_rev),
-            gain: device.stages.large.inertia * TAU * tuning.bandwidth_hz,
+            gain: device.stages.large.inertia
+                * (TAU * tuning.bandwidth_hz).min(LARGEST_GAIN / period_s),
             tuning,
             share: low_pass_share(CUTOFF_HZ, period_s),
             last: None,

@@ -110,6 +110,26 @@ fn creep_has_its_mean_speed_in_both_directions() {
     }
 }
 
+/// The slip is at most 0.05 rad/s, and 20000 counts of the reference at 100 Hz are 0.03 rad/s each.
+#[test]
+fn loop_of_creep_is_stable_at_slow_rates() {
+    for rate in [100.0, 120.0, 150.0, 200.0, 400.0] {
+        let trace = simulate(
+            &Device::default().frictionless(),
+            ScenarioName::Creep,
+            rate,
+            1,
+            10.0,
+            ALL,
+        )
+        .unwrap();
+        let largest = omega(&trace)
+            .iter()
+            .fold(0.0_f64, |most, w| most.max(w.abs()));
+        assert!(largest < 0.3, "{rate} Hz: {largest} rad/s");
+    }
+}
+
 #[test]
 fn texture_moves_the_motor_at_50_to_300_hz() {
     for rate in RATES {
