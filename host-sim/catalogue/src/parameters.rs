@@ -7,7 +7,9 @@ use std::path::Path;
 pub use device_files::presets::{PlantKind, Preset, Presets};
 use serde::{Deserialize, Serialize};
 
-use crate::estimators::{Kind, Search, Setup, Values, check};
+use device_files::presets::leaves_range;
+
+use crate::estimators::{Kind, Parameter, Search, Setup, Values, check};
 use terminal::failure::Failure;
 
 /// Reads a presets file and checks its estimators and their parameters.
@@ -129,6 +131,36 @@ impl Parameters {
             values[change.index] = change.value;
         }
         values
+    }
+
+    /// Names of the parameters of `kind` whose tuned values, scaled to `setup`, would leave their ranges. They have the
+    /// end of the range. Values that are set by name are left out.
+    #[must_use]
+    pub fn at_range_ends(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Vec<&'static str> {
+        let is_set = |index: usize| {
+            let mut set = self.overrides.iter();
+            set.any(|change| change.kind == kind.name && change.index == index)
+        };
+        let counts = setup.stages.large.counts_per_rev;
+        let is_at_end = |parameter: &Parameter| {
+            let mut layers = self.layers.iter().rev();
+            layers.find_map(|layer| {
+                let preset = layer.nearest(kind.name, setup.rate.0, plant)?;
+                let tuned = *preset.estimators.get(kind.name)?.get(parameter.name)?;
+                let rate = setup.rate.0 / preset.rate_hz;
+                Some(leaves_range(
+                    parameter,
+                    tuned,
+                    preset.counts_ratio(counts),
+                    rate,
+                ))
+            })
+        };
+        let parameters = kind.parameters.iter().enumerate();
+        parameters
+            .filter(|(index, parameter)| !is_set(*index) && is_at_end(parameter) == Some(true))
+            .map(|(_, parameter)| parameter.name)
+            .collect()
     }
 }
 

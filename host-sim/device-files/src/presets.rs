@@ -104,6 +104,20 @@ impl Preset {
     }
 }
 
+/// Whether a tuned value, scaled to other counts and another rate by these ratios, would be outside of the range of the
+/// parameter, whose end [`Parameter::scaled`] then gives.
+#[must_use]
+pub fn leaves_range(parameter: &Parameter, tuned: f64, counts: f64, rate: f64) -> bool {
+    let factor = parameter.scaling.factor(counts, rate);
+    // A value that is not scaled was checked when the file was read.
+    let wanted = tuned * factor;
+    // A whole parameter is rounded.
+    let rounding = if parameter.whole { 0.5 } else { 0.0 };
+    let least = parameter.lowest * (1.0 - 1e-9) - rounding;
+    let most = parameter.highest * (1.0 + 1e-9) + rounding;
+    factor != 1.0 && !(least..=most).contains(&wanted)
+}
+
 /// Checks a value of a parameter of `estimator`.
 ///
 /// # Errors
@@ -304,6 +318,27 @@ mod tests {
         assert_eq!(rate("low-pass", 1e5, PlantKind::Friction), Some(2000.0));
         assert_eq!(rate("low-pass", 1e5, PlantKind::Frictionless), None);
         assert_eq!(rate("foaw-end-fit", 1e3, PlantKind::Friction), None);
+    }
+
+    /// A window of 40 intervals at 1 kHz has 400 at 10 kHz, and 128 at most.
+    #[test]
+    fn value_that_would_leave_its_range_is_known() {
+        let mut rows = estimator_catalogue::ROWS.iter();
+        let row = rows.find(|row| row.name == "foaw-best-fit").unwrap();
+        let n = row.parameters.iter().find(|p| p.name == "n").unwrap();
+        assert_eq!(n.highest, 128.0);
+        for (tuned, rate, leaves) in [
+            (40.0, 3.2, false),
+            (40.0, 10.0, true),
+            (128.0, 1.0, false),
+            (4.0, 0.5, false),
+        ] {
+            assert_eq!(leaves_range(n, tuned, 1.0, rate), leaves, "{tuned} {rate}");
+            assert_eq!(
+                n.scaled(tuned, 1.0, rate) == 128.0,
+                leaves || rate == 3.2 || tuned == 128.0
+            );
+        }
     }
 
     #[test]

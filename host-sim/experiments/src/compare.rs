@@ -54,6 +54,8 @@ pub struct Outcome {
     pub signals: Option<(Trace, Vec<Estimate>)>,
     /// True and estimated damping, in scenario heating.
     pub damping: Option<Damping>,
+    /// Whether the large motor moves by a count.
+    pub moves: bool,
     /// Run time.
     pub cost: Cost,
 }
@@ -175,6 +177,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         damping: heats
             .then(|| Damping::of(&evaluation, &trace, &estimates))
             .flatten(),
+        moves: trace.counts_large.windows(2).any(|pair| pair[0] != pair[1]),
         cost: Cost {
             plant_steps: plant_steps(case.rate_hz, case.seconds)?,
             simulation: simulated - begin,

@@ -54,6 +54,40 @@ fn refusal(kind: &Kind, parameters: &Parameters, (setup, plant): &Place) -> Opti
     are_shipped.then(|| format!("with {counts} counts/rev {why}"))
 }
 
+/// A line on tuned values that scaling to one of `places` takes to an end of their range, where they are not the best
+/// values; `None` if there are none.
+#[must_use]
+pub fn at_range_ends(
+    kinds: &[&'static Kind],
+    parameters: &Parameters,
+    places: &[Place],
+) -> Option<String> {
+    let (mut rates, mut names) = (Vec::new(), Vec::new());
+    for (setup, plant) in places {
+        for kind in kinds {
+            for parameter in parameters.at_range_ends(kind, setup, *plant) {
+                rates.push(setup.rate.0);
+                let name = format!("{}.{parameter}", kind.name);
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+    }
+    let counts = places.first()?.0.stages.large.counts_per_rev;
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    let rates: Vec<_> = rates.iter().map(|hz| format!("{hz} Hz")).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "presets that are scaled to large.counts_per_rev = {counts} at {} leave their range, and have its end, which \
+             is not tuned: {}; tune them with host-sim tune --device, or give --set",
+            rates.join(" and "),
+            names.join(", ")
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,5 +133,24 @@ mod tests {
         assert!(kind.build(&setup, &values).is_err());
         let (able, lines) = designed(&[kind], &parameters, &[(setup, plant)]);
         assert_eq!((able.len(), lines.len()), (1, 0), "{lines:?}");
+    }
+
+    #[test]
+    fn values_at_the_end_of_their_range_are_named_with_counts_and_rate() {
+        let kinds: Vec<_> = Kind::all().iter().collect();
+        let parameters = Parameters::default();
+        let line = |counts: u32, rate_hz: f64| {
+            at_range_ends(&kinds, &parameters, &[place(counts, rate_hz)])
+        };
+        for rate_hz in [1e3, 2e3, 10e3, 11.6e3] {
+            assert_eq!(line(4096, rate_hz), None);
+        }
+        let said = line(16, 10e3).unwrap();
+        assert!(
+            said.starts_with(
+                "presets that are scaled to large.counts_per_rev = 16 at 10000 Hz leave their range"
+            ) && said.contains("foaw-best-fit.n"),
+            "{said}"
+        );
     }
 }

@@ -7,6 +7,7 @@ use clap::Args;
 use catalogue::parameters::{Parameters, PlantKind};
 use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::compare::{Case, Cost, Outcome, Settings, compare, setup_of};
+use experiments::designed::at_range_ends;
 use experiments::rows;
 use experiments::table;
 use experiments::table::layout::terminal_width;
@@ -142,6 +143,9 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         let cost = outcomes.iter().map(|outcome| outcome.cost).sum();
         note(timing(cost));
     }
+    for line in outcomes[..asked].iter().filter_map(at_rest) {
+        note(format_args!("note: {line}"));
+    }
     let asked_rows: Vec<Row> = outcomes[..asked]
         .iter()
         .flat_map(|o| o.rows.clone())
@@ -182,6 +186,27 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     page::print(options.json.as_deref(), &rows::json(&asked_rows)?, &text)
 }
 
+/// A line on a motor that does not move; `None` for one that moves.
+fn at_rest(outcome: &Outcome) -> Option<String> {
+    let Case {
+        scenario,
+        rate_hz,
+        plant,
+        ..
+    } = outcome.case;
+    let friction = match plant {
+        PlantKind::Friction => "large.coulomb_nm is",
+        PlantKind::Frictionless => "large.inertia_kg_m2 and coupler.damping_nms_per_rad are",
+    };
+    (!outcome.moves).then(|| {
+        format!(
+            "{scenario} at {rate_hz} Hz: the motor does not move by a count, so that there is no delay and no score in % \
+             of finite difference; {friction} too large for large.torque_constant_nm_per_a and large.current_limit_a, \
+             or large.counts_per_rev too small"
+        )
+    })
+}
+
 /// The settings of `cases`, with the estimators of these names; if no name is given, all that run in every
 /// case.
 pub(super) fn settings(
@@ -193,8 +218,12 @@ pub(super) fn settings(
 ) -> Result<Settings, Failure> {
     let place = |case: &Case| (setup_of(case, &device), case.plant);
     let places: Vec<_> = cases.iter().map(place).collect();
+    let estimators = kinds_at(names, &parameters, &places)?;
+    if let Some(line) = at_range_ends(&estimators, &parameters, &places) {
+        note(format_args!("note: {line}"));
+    }
     Ok(Settings {
-        estimators: kinds_at(names, &parameters, &places)?,
+        estimators,
         device,
         parameters,
         wanted,

@@ -118,3 +118,23 @@ fn set_parameter_changes_the_scores() {
     assert_eq!(rms("foaw-end-fit.n=1"), 100.0);
     assert_ne!(rms("foaw-end-fit.n=15"), 100.0);
 }
+
+/// Without the lines the table has columns less, and says no more.
+#[test]
+fn motor_at_rest_and_values_at_the_end_of_their_range_are_told() {
+    let folder = Folder::new(HOST_SIM);
+    let notes = |text: &str, rate: &str| {
+        folder.write("mine.toml", text);
+        let arguments = "compare --device mine.toml --scenario step --estimator foaw-best-fit --seconds 1 --no-report";
+        folder.ends(0, &format!("{arguments} --rate {rate}")).1
+    };
+    assert_eq!(notes("", "1000"), "");
+    let said = notes("large.coulomb_nm = 5", "1000");
+    let rest = "note: step at 1000 Hz: the motor does not move by a count, so that there is no delay and no score in % \
+                of finite difference; large.coulomb_nm is too large for";
+    assert!(said.starts_with(rest), "{said}");
+    let said = notes("large.counts_per_rev = 16", "10000");
+    let ends = "note: presets that are scaled to large.counts_per_rev = 16 at 10000 Hz leave their range, and have its \
+                end, which is not tuned: foaw-best-fit.n; tune them with";
+    assert!(said.starts_with(ends), "{said}");
+}
