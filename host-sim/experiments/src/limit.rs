@@ -19,7 +19,10 @@ use scoring::score::{Truth, Wanted};
 use simulation::scenario::{Role, ScenarioName, TORQUE_INTENSITY_NM2_S};
 use terminal::failure::Failure;
 
-pub use filter::{Filtered, Noise, filter};
+pub use filter::{Filtered, Noise, PARTS, filter};
+
+/// Number of calls of `done` for each case of [`limit`]: the filter runs with counts and with edges.
+pub const STEPS_PER_CASE: usize = 2 * PARTS;
 
 /// Error of one estimator, or of the particle filter, in one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -114,7 +117,7 @@ fn noise(scenario: ScenarioName) -> Noise {
     }
 }
 
-/// Runs all cases in parallel with `particles` particles each and calls `done` after each case.
+/// Runs all cases in parallel with `particles` particles each and calls `done` [`STEPS_PER_CASE`] times during each.
 ///
 /// # Errors
 /// [`Failure::Input`] of the first case, in order, that cannot be run.
@@ -124,15 +127,16 @@ pub fn limit(
     particles: usize,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<LimitRow>, Failure> {
-    let rows = in_order(cases, |case| {
-        let rows = run(case, settings, particles);
-        done();
-        rows
-    })?;
+    let rows = in_order(cases, |case| run(case, settings, particles, done))?;
     Ok(rows.into_iter().flatten().collect())
 }
 
-fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<LimitRow>, Failure> {
+fn run(
+    case: &Case,
+    settings: &Settings,
+    particles: usize,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<LimitRow>, Failure> {
     // The particle filter uses all signals.
     let all: Vec<&Kind> = Kind::all().iter().collect();
     let trace = trace(case, &settings.device, &all)?;
@@ -155,7 +159,7 @@ fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<LimitRo
     let reference = rms(&difference.run(&trace));
     let noise = noise(case.scenario);
     let of = |edges| {
-        let found = filter(&trace, &setup, &noise, edges, particles, case.seed);
+        let found = filter(&trace, &setup, &noise, edges, particles, case.seed, done);
         (rms(&found.velocities), found.collapsed)
     };
     let ((counts, counts_collapsed), (edges, edges_collapsed)) = (of(false), of(true));

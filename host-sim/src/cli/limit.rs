@@ -6,7 +6,7 @@ use clap::Args;
 
 use catalogue::parameters::PlantKind;
 use experiments::compare::Case;
-use experiments::limit::{SCENARIOS, limit, table::table, too_few};
+use experiments::limit::{SCENARIOS, STEPS_PER_CASE, limit, table::table, too_few};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::DeviceFile;
@@ -74,7 +74,7 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
         parameters,
         Wanted::NONE,
     )?;
-    let bar = progress(cases.len(), "filtering");
+    let bar = progress(STEPS_PER_CASE * cases.len(), "filtering");
     let rows = limit(&cases, &settings, options.particles as usize, &|| {
         bar.inc(1);
     })?;

@@ -130,7 +130,10 @@ pub struct Filtered {
     pub collapsed: f64,
 }
 
-/// Runs the filter over a trace. Deterministic in `seed`.
+/// Number of equal parts of a run of [`filter`], for progress.
+pub const PARTS: usize = 50;
+
+/// Runs the filter over a trace, and calls `done` after each of [`PARTS`] equal parts. Deterministic in `seed`.
 #[must_use]
 pub fn filter(
     trace: &Trace,
@@ -139,6 +142,7 @@ pub fn filter(
     edges: bool,
     particles: usize,
     seed: u64,
+    done: &dyn Fn(),
 ) -> Filtered {
     let model = Model::new(setup, noise);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x11_417);
@@ -221,6 +225,9 @@ pub fn filter(
             cloud = resampled(&cloud, &weights, total, spreads, &mut random);
             weights.fill(1.0);
         }
+        // The first tick has no step.
+        let parts = |ticks: usize| ticks * PARTS / (trace.len() - 1);
+        (parts(k - 1)..parts(k)).for_each(|_| done());
     }
     Filtered {
         velocities,
@@ -340,12 +347,34 @@ mod tests {
             torque_noise: 6e-6,
             ..QUIET
         };
-        let found = filter(&trace, &setup, &noise, false, 500, 1).velocities;
+        let found = filter(&trace, &setup, &noise, false, 500, 1, &|| ()).velocities;
         let squares = found.iter().zip(&truth).skip(20);
         let squares = squares.map(|(found, truth)| (f64::from(*found) - truth).powi(2));
         let rms = (squares.sum::<f64>() / f64::from(ticks - 20)).sqrt();
         // The opposite sign of the lag causes an error of 0.16 of the slope in counts per tick.
         let wrong = 0.16 * per_amp * 0.5 * TAU * 1e3 / f64::from(setup.stages.large.counts_per_rev);
         assert!(rms < 0.2 * wrong, "{rms} rad/s, of {wrong}");
+    }
+
+    #[test]
+    fn progress_has_its_parts_in_every_run() {
+        let setup = Setup::of(&Device::default(), 1e3);
+        for ticks in [2, 30, 173] {
+            let trace = Trace {
+                rate_hz: 1e3,
+                counts_large: vec![0; ticks],
+                counts_small: None,
+                current: None,
+                edges: None,
+                true_omega: None,
+                true_damping: None,
+                periods: None,
+            };
+            let calls = std::cell::Cell::new(0);
+            let _ = filter(&trace, &setup, &QUIET, false, 10, 1, &|| {
+                calls.set(calls.get() + 1);
+            });
+            assert_eq!(calls.get(), PARTS, "{ticks}");
+        }
     }
 }
