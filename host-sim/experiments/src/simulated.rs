@@ -1,5 +1,7 @@
 //! Simulated recordings: a scenario in open loop, or a scene in closed loop.
 
+use std::f64::consts::TAU;
+
 use haptic_control::{LoopPoles, SceneKind};
 
 use crate::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, loop_ticks, named, usual};
@@ -14,6 +16,10 @@ use terminal::failure::Failure;
 
 /// Default duration of a scene, s: a little longer than the excitation.
 const EXCITE_S: f64 = 16.0;
+/// Time before the end of scene excite, or of a run, from which a current is certain, s.
+const PAUSE_S: f64 = 0.2;
+/// Change of the handle's angle in a millisecond from which scene excite ends, rad.
+const EXCITE_STEP_RAD: f64 = 0.025;
 
 /// What a recording of a scenario or of a scene is made from.
 #[derive(Clone, Debug)]
@@ -58,7 +64,7 @@ impl Run {
     }
 
     /// Every tick of number `every` of the scene called `name` [default: excite], with the load `hand` on
-    /// the handle.
+    /// the handle. The recording has a note where scene excite ended early or did not move the motor.
     ///
     /// # Errors
     /// [`Failure::Input`] that names an unknown scene, or a rate or a duration out of range.
@@ -79,6 +85,7 @@ impl Run {
                     .chain(SceneKind::environments()),
             )?,
         };
+        let is_free = matches!(hand, Hand::Gone(_));
         let ticks = loop_ticks(self.rate_hz, self.seconds.unwrap_or(EXCITE_S))?;
         let parameters = Parameters::default();
         let estimator = |counts_per_rev| {
@@ -100,6 +107,66 @@ impl Run {
             offsets_a: [0.0; 2],
             device,
         };
-        Ok(run.record(ticks, every)?)
+        let mut recording = run.record(ticks, every)?;
+        if scene == SceneKind::Excite {
+            let ended = (!is_free).then(|| self.ended(&recording)).flatten();
+            recording
+                .notes
+                .extend(ended.or_else(|| self.at_rest(&recording)));
+        }
+        Ok(recording)
+    }
+
+    /// What ended the excitation before its pattern or the run did.
+    fn ended(&self, recording: &Recording) -> Option<String> {
+        let columns = [&recording.trace.current, &recording.current_small];
+        let flows = |k: &usize| {
+            columns
+                .iter()
+                .any(|c| c.as_ref().is_some_and(|c| c[*k] != 0.0))
+        };
+        let last = (0..recording.t.len()).rev().find(flows);
+        let last_s = last.map_or(0.0, |k| recording.t[k]);
+        let end_s = self.seconds.unwrap_or(EXCITE_S).min(EXCITE_S);
+        if last_s > end_s - PAUSE_S {
+            return None;
+        }
+        let counts = self.device.stages.small.counts_per_rev;
+        let why = match TAU / f64::from(counts) > EXCITE_STEP_RAD {
+            true => format!(
+                "a count of small.counts_per_rev = {counts} is more than that: give --hand clamp, or an encoder \
+                 of {:.0} counts or more",
+                (TAU / EXCITE_STEP_RAD).ceil()
+            ),
+            false => "hold the handle, with --hand still or --hand clamp".to_owned(),
+        };
+        Some(format!(
+            "scene excite ended after {last_s:.2} s, because the handle moved by more than {EXCITE_STEP_RAD} rad in \
+             a millisecond or 2 rad in all; {why}"
+        ))
+    }
+
+    /// Why the motor does not move by a count.
+    fn at_rest(&self, recording: &Recording) -> Option<String> {
+        let moves = recording
+            .trace
+            .counts_large
+            .windows(2)
+            .any(|pair| pair[0] != pair[1]);
+        if moves {
+            return None;
+        }
+        let current = recording.trace.current.as_deref().unwrap_or_default();
+        let largest = current.iter().fold(0.0_f64, |most, i| most.max(i.abs()));
+        let stages = &self.device.stages;
+        Some(format!(
+            "the large motor does not move: scene excite has {largest:.3} A at most, {:.2e} N.m, and \
+             large.coulomb_nm is {:.2e}; its current is lower where 0.9 A would drive the motor beyond 60 rad/s \
+             against coupler.damping_nms_per_rad = {:.2e}, or beyond large.current_limit_a: check these keys, or \
+             record another motion that speeds up, slows down and reverses",
+            largest * stages.large.torque_constant,
+            stages.large.coulomb_friction,
+            stages.damping
+        ))
     }
 }

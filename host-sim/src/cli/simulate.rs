@@ -9,7 +9,7 @@ use experiments::simulated::Run;
 use recordings::arguments::DeviceFile;
 use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
-use terminal::output::write_whole;
+use terminal::output::{note, write_whole};
 
 use super::arguments::loop_rate_help;
 use super::page::working;
@@ -86,5 +86,9 @@ pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
         None => run.scene(options.scene.as_deref(), hand, options.every as usize),
     };
     bar.finish_and_clear();
-    write_whole(&options.out, &recording?.to_csv())
+    let recording = recording?;
+    for line in &recording.notes {
+        note(format_args!("note: {line}"));
+    }
+    write_whole(&options.out, &recording.to_csv())
 }

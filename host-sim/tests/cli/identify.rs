@@ -188,3 +188,36 @@ fn coarse_handle_encoder_is_named_as_the_cause_of_wide_intervals() {
         "the encoders are too coarse for it: clamp the handle, or give its encoder more counts";
     assert!(table.join(" ").contains(said), "{table:?}");
 }
+
+#[test]
+fn excitation_that_ends_early_or_moves_nothing_is_told() {
+    let folder = Folder::new(HOST_SIM);
+    let notes = |text: &str, options: &str| {
+        folder.write("mine.toml", text);
+        let arguments = "simulate --device mine.toml --every 10 --out excite.csv";
+        folder.ends(0, &format!("{arguments} {options}")).1
+    };
+    assert_eq!(notes("", ""), "");
+    assert_eq!(notes("", "--hand nobody"), "");
+    let coarse = "small.counts_per_rev = 200";
+    let said = notes(coarse, "");
+    assert!(
+        said.starts_with("note: scene excite ended after 0.0")
+            && said.contains(
+                "a count of small.counts_per_rev = 200 is more than that: give --hand clamp"
+            )
+            && said.contains("an encoder of 252 counts or more"),
+        "{said}"
+    );
+    assert_eq!(notes("small.counts_per_rev = 252", ""), "");
+    assert_eq!(notes(coarse, "--hand clamp"), "");
+    let said = notes("coupler.damping_nms_per_rad = 5e-5", "");
+    let rest = "note: the large motor does not move: scene excite has 0.064 A at most, 3.00e-3 N.m, and \
+                large.coulomb_nm is 4.00e-3";
+    assert!(said.starts_with(rest), "{said}");
+    let refused = folder.refused("identify excite.csv --device mine.toml");
+    assert!(
+        refused.contains("the large motor does not move; check"),
+        "{refused}"
+    );
+}

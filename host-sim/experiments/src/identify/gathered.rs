@@ -144,6 +144,13 @@ impl Gathered {
         if let Some(why) = implausible_current(self.largest_current, limit, option) {
             return Err(why);
         }
+        if self.travel[0] == 0.0 {
+            return Err(
+                "the large motor does not move; check that the current is larger than its friction, and that its \
+                 encoder counts"
+                    .to_owned(),
+            );
+        }
         let Some(fit) = Fit::new(&self.large.usable) else {
             return Err(match &self.uneven {
                 Some(uneven) => format!(

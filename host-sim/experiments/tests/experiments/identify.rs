@@ -327,7 +327,7 @@ fn insufficient_recording_is_refused_with_a_remedy() {
     });
     assert!(error.contains("backward"), "{error}");
     let error = refused(&|r| r.trace.counts_large.fill(7));
-    assert!(error.contains("turns one way"), "{error}");
+    assert!(error.contains("does not move"), "{error}");
     // Currents of something else: shuffled in time by a second.
     let error = refused(&|r| r.trace.current.as_mut().unwrap().rotate_right(1000));
     assert!(
