@@ -25,6 +25,7 @@ mod numbers;
 mod options;
 mod own_times;
 mod parts;
+mod prefixed;
 mod records;
 mod resample;
 mod row;

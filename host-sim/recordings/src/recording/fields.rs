@@ -1,6 +1,7 @@
 //! What is wrong with a field that is no number, and the remedy.
 
 use super::options::Column;
+use super::prefixed;
 use super::units::Quantity;
 
 /// Characters of a field that a message shows.
@@ -17,9 +18,10 @@ pub(super) fn is_without_value(text: &str) -> bool {
 /// The error for `text` in `column`, which the log calls `theirs`. `is_first` is true for the row below
 /// the header.
 pub(super) fn not_a_number(text: &str, [column, theirs]: [&str; 2], is_first: bool) -> String {
-    let remedy = match text == theirs {
-        true => "the header is repeated: cut the log there".to_owned(),
-        false => remedy(text, column, is_first),
+    let remedy = match (text == theirs, prefixed::remedy(text)) {
+        (true, _) => "the header is repeated: cut the log there".to_owned(),
+        (false, Some(stamped)) => stamped,
+        (false, None) => remedy(text, column, is_first),
     };
     format!("{} is not a number; {remedy}", quoted(text))
 }

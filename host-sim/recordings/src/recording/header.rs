@@ -6,6 +6,7 @@ use super::formats::Format;
 use super::hint::{self, example, theirs};
 use super::layout::{Layout, Places};
 use super::options::{Column, Mapping};
+use super::prefixed;
 
 /// Characters of a header that a message shows.
 const SHOWN: usize = 60;
@@ -21,8 +22,10 @@ pub(super) fn missing(column: Column, layout: &Layout, places: &Places, name: &s
         return Failure::Input(format!("{name}: line {}: {why}", layout.line.max(1)));
     }
     let found = found(layout);
-    let remedy = match column {
-        Column::T | Column::CountsLarge => format!(
+    let stamped = prefixed::remedy_of(layout);
+    let remedy = match (column, stamped) {
+        (Column::T | Column::CountsLarge, Some(remedy)) => remedy,
+        (Column::T | Column::CountsLarge, None) => format!(
             "{}{}; read without options are t with counts_large, and the logs of {}",
             hint::option(layout),
             hint::without_time(layout),
