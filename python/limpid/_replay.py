@@ -170,7 +170,7 @@ def read_log(
         Replace the rows by rows at this rate, Hz.
     counts_per_rev
         Counts per revolution [default: those in the device file, otherwise those that the log states,
-        otherwise 4096].
+        otherwise 4096, with a note].
     device
         Path of a device file (TOML), or a dict with its sections.
 

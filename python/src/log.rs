@@ -41,15 +41,22 @@ pub(crate) fn read_log<'py>(
     check_file(py, &path)?;
     let read = py.detach(|| -> Result<_, Failure> {
         let log = Log::open(&path)?;
-        let Counted { device, lines, .. } =
-            Counted::new(of_file, source, std::slice::from_ref(&log))?;
+        let Counted {
+            device,
+            lines,
+            is_stated,
+        } = Counted::new(of_file, source, std::slice::from_ref(&log))?;
         let recording = options.read(&log, &device)?;
-        Ok((recording, lines, device.stages.large.counts_per_rev))
+        let counts = device.stages.large.counts_per_rev;
+        let assumed = (source.is_none() && !is_stated)
+            .then(|| format!("{counts} counts/rev assumed: give counts_per_rev or device"));
+        Ok((recording, lines, assumed, counts))
     });
-    let (mut recording, stated, counts_per_rev) = read.map_err(value_error)?;
+    let (mut recording, stated, assumed, counts_per_rev) = read.map_err(value_error)?;
     let notes = stated
         .into_iter()
-        .chain(std::mem::take(&mut recording.notes));
+        .chain(std::mem::take(&mut recording.notes))
+        .chain(assumed);
     let notes: Vec<_> = notes.map(|note| in_python(&note)).collect();
     let fields = fields(py, recording)?;
     fields.set_item("name", short_name(&path))?;

@@ -152,6 +152,16 @@ def test_device_without_counts_leaves_those_that_the_log_states(tmp_path):
         assert not any("counts/rev" in note for note in found.notes)
 
 
+def test_counts_that_nothing_states_are_assumed_with_a_note(tmp_path):
+    path = tmp_path / "plain.csv"
+    path.write_text("t,counts_large\n" + "".join(f"{k / 1000},{k}\n" for k in range(50)))
+    said = "4096 counts/rev assumed: give counts_per_rev or device"
+    assert limpid.read_log(path).notes == [said]
+    assert limpid.read_log(path, device={"large": {"inertia_kg_m2": 2e-5}}).notes == [said]
+    assert limpid.read_log(path, counts_per_rev=4096).notes == []
+    assert limpid.read_log(path, device={"large": {"counts_per_rev": 4096}}).notes == []
+
+
 def test_logs_of_different_encoders_are_refused():
     logs = [limpid.Recording(np.arange(5000), 1000, counts_per_rev=counts, name=str(counts)) for counts in (90, None)]
     inertia = {"large": {"inertia_kg_m2": 2e-5}}

@@ -64,10 +64,11 @@ def test_note_on_an_unknown_modulus_has_a_remedy_that_works(tmp_path):
     path = tmp_path / "wrapped.csv"
     rows = "".join(f"{k / 1000},{count},{50 * k % 16384}\n" for k, count in enumerate(wrapped))
     path.write_text("t,counts_large,counts_small\n" + rows)
-    large, small = limpid.read_log(path).notes
+    large, small = limpid.read_log(path, counts_per_rev=4096).notes
     assert "or modulus={'counts_large': N}, N about 360, if" in large
     assert "or modulus={'counts_small': 16384} if" in small
-    log = limpid.read_log(path, modulus={"counts_large": 360, "counts_small": 16384})
+    modulus = {"counts_large": 360, "counts_small": 16384}
+    log = limpid.read_log(path, modulus=modulus, counts_per_rev=4096)
     assert log.notes == []
     np.testing.assert_array_equal(limpid.replay(log).velocity, expected)
 
