@@ -14,7 +14,8 @@ use terminal::output::{note, print_to_reader};
 use crate::clock::Limit;
 use crate::named::explained;
 use crate::port::Port;
-use crate::refusal::{compatible, refusal, silent};
+use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refused, silent};
+use crate::sent::ATTEMPTS;
 use crate::watch::is_enabled;
 
 /// Time after which a question is asked again.
@@ -205,25 +206,44 @@ impl Board {
         Ok(answer)
     }
 
-    /// Sends a command and checks that the board takes it. `what` names the command in the message.
+    /// Sends a command and checks that the board takes it. `what` names the command in the message. A command beside
+    /// which bytes came that are no command is sent again: it may have been damaged.
     ///
     /// # Errors
-    /// [`Failure::Check`] if the board refuses it, [`Failure::Input`] if it does not answer.
+    /// [`Failure::Check`] if the board refuses it, if such bytes come each time, or if the board starts again;
+    /// [`Failure::Input`] if it does not answer.
     pub(crate) fn change(&mut self, command: Command, what: &str) -> Result<(), Failure> {
-        let before = self.identify()?.rejected;
-        self.send(command)?;
-        let after = self.identify()?.rejected;
         let scene = match command {
             Command::Tune { scene, .. } => SceneKind::ALL.get(usize::from(scene)).copied(),
             _ => None,
         };
-        match before.zip(after).and_then(|(a, b)| refusal(&a, &b)) {
-            Some(reason) => Err(Failure::Check(format!(
-                "{what}: the board refuses it: {}",
-                explained(reason, scene)
-            ))),
-            None => Ok(()),
+        let mut before = self.identify()?.rejected;
+        for _ in 0..ATTEMPTS {
+            self.send(command)?;
+            let after = self.identify()?.rejected;
+            let Some((earlier, now)) = before.zip(after) else {
+                return Ok(());
+            };
+            if let Some(reason) = refused(&earlier, &now) {
+                return Err(Failure::Check(format!(
+                    "{what}: the board refuses it: {}",
+                    explained(reason, scene)
+                )));
+            }
+            if has_started_again(&earlier, &now) {
+                return Err(Failure::Check(format!(
+                    "{what}: the board has started again; find the cause of the reset, then run the command again"
+                )));
+            }
+            if !is_damaged(&earlier, &now) {
+                return Ok(());
+            }
+            before = after;
         }
+        Err(Failure::Check(format!(
+            "{what}: sent {ATTEMPTS} times, and not certain: each time bytes that are no command reached the \
+             board; {NOISE}"
+        )))
     }
 
     /// The first frame that is as wanted.

@@ -21,6 +21,7 @@ pub mod port;
 mod record;
 pub mod refusal;
 mod response;
+mod sent;
 mod session;
 pub mod settings;
 mod strokes;

@@ -1,15 +1,16 @@
 //! Why a board refuses a command, and why a program of the host refuses a board.
 
-use std::collections::VecDeque;
-
 use drivers::link::{Hello, PROTOCOL, Parser, Rejected};
-use haptic_control::SceneKind;
 use terminal::failure::Failure;
-
-use crate::named::explained;
 
 /// Reason of the refusal of a value.
 pub(crate) const OUT_OF_BOUNDS: &str = "the value is out of bounds";
+/// Reason of the refusal of a scene in closed loop.
+pub(crate) const UNVERIFIED: &str =
+    "the signs of encoders and currents have not been verified; run cargo drive bring-up";
+/// What to do about bytes that reach the board and are no command.
+pub(crate) const NOISE: &str =
+    "check the line of the board, and end what writes to its debug probe";
 
 /// Checks that the board at the port of this name speaks the protocol of this build.
 ///
@@ -38,97 +39,55 @@ pub fn silent(port: &str, parser: &Parser) -> String {
     format!("{port}: the board {heard}; check the port, the power and that the image has the link")
 }
 
-/// The reason of a refusal between two counts.
+/// The reason of a refusal between two counts. Bytes that are no command may have been one.
 #[must_use]
 pub fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str> {
+    let damaged =
+        is_damaged(before, now).then_some("bytes that are no command came; it may be lost");
+    refused(before, now).or(damaged)
+}
+
+/// The reason why the board has refused a command that it understood, between two counts.
+pub(crate) fn refused(before: &Rejected, now: &Rejected) -> Option<&'static str> {
     [
         (before.not_finite, now.not_finite, "the value is not finite"),
         (before.out_of_bounds, now.out_of_bounds, OUT_OF_BOUNDS),
         (before.unknown, now.unknown, "the image does not have it"),
-        (
-            before.unverified,
-            now.unverified,
-            "the signs of encoders and currents have not been verified; run cargo drive bring-up",
-        ),
-        (before.garbage, now.garbage, "the command arrived damaged"),
+        (before.unverified, now.unverified, UNVERIFIED),
     ]
     .into_iter()
-    .find_map(|(before, now, reason)| (before != now).then_some(reason))
+    .find_map(|(before, now, reason)| has_grown(before, now).then_some(reason))
 }
 
-/// The commands of a session that wait for the counts of refused ones. The answers come in the order of the
-/// questions.
-pub(crate) struct Sent {
-    /// The counts before the session.
-    before: Option<Rejected>,
-    scene: Option<SceneKind>,
-    /// Names of the commands; questions from before the session have none.
-    names: VecDeque<Option<String>>,
+/// Whether bytes that are no command reached the board between two counts: on its line, or over its debug probe.
+/// A command between them may be one of these.
+pub(crate) const fn is_damaged(before: &Rejected, now: &Rejected) -> bool {
+    has_grown(before.garbage, now.garbage)
 }
 
-impl Sent {
-    /// A session with a scene, and so many questions from before it without an answer.
-    pub(crate) fn new(before: Option<Rejected>, scene: Option<SceneKind>, earlier: u32) -> Self {
-        Self {
-            before,
-            scene,
-            names: (0..earlier).map(|_| None).collect(),
-        }
-    }
+/// Whether the board has started again between two counts, as far as they tell: a count has gone back.
+pub(crate) fn has_started_again(before: &Rejected, now: &Rejected) -> bool {
+    let counts = |it: &Rejected| {
+        [
+            it.garbage,
+            it.not_finite,
+            it.out_of_bounds,
+            it.unknown,
+            it.unverified,
+        ]
+    };
+    let mut pairs = counts(before).into_iter().zip(counts(now));
+    pairs.any(|(before, now)| has_grown(now, before))
+}
 
-    /// A command of this name has been sent, and a question after it.
-    pub(crate) fn add(&mut self, name: String) {
-        self.names.push_back(Some(name));
-    }
-
-    /// Takes an answer.
-    ///
-    /// # Errors
-    /// [`Failure::Check`] with the name of the command if the board has refused it.
-    pub(crate) fn check(&mut self, now: &Rejected) -> Result<(), Failure> {
-        let name = self.names.pop_front().flatten();
-        let Some(reason) = self.before.and_then(|before| refusal(&before, now)) else {
-            return Ok(());
-        };
-        let reason = explained(reason, self.scene);
-        Err(Failure::Check(match name {
-            Some(name) => format!("{name}: the board refuses it: {reason}"),
-            None => format!("the board refuses a command: {reason}"),
-        }))
-    }
+/// Whether a count, which wraps, has grown. A board that starts again counts from 0.
+const fn has_grown(before: u32, now: u32) -> bool {
+    now.wrapping_sub(before).cast_signed() > 0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn refused_command_is_named_by_its_place_among_the_answers() {
-        let none = Rejected::default();
-        let refused = Rejected {
-            out_of_bounds: 1,
-            ..none
-        };
-        let sent = || {
-            let mut sent = Sent::new(Some(none), Some(SceneKind::Wall), 1);
-            sent.add("scene wall".to_owned());
-            sent.add("wall stiffness 9 N·m/rad".to_owned());
-            sent
-        };
-        let mut first = sent();
-        let said = first.check(&refused).unwrap_err().to_string();
-        assert_eq!(
-            said,
-            "the board refuses a command: the value is out of bounds"
-        );
-        let mut third = sent();
-        assert!(third.check(&none).is_ok() && third.check(&none).is_ok());
-        let said = third.check(&refused).unwrap_err().to_string();
-        assert_eq!(
-            said,
-            "wall stiffness 9 N·m/rad: the board refuses it: the value is out of bounds"
-        );
-    }
 
     #[test]
     fn refusal_is_named_by_the_count_that_changed() {
@@ -152,5 +111,30 @@ mod tests {
             ..none
         };
         assert!(refusal(&most, &none).unwrap().contains("not finite"));
+    }
+
+    #[test]
+    fn counts_of_a_board_that_started_again_are_no_refusal() {
+        let before = Rejected {
+            garbage: 7,
+            unknown: 1,
+            ..Rejected::default()
+        };
+        let now = Rejected::default();
+        assert_eq!(refusal(&before, &now), None);
+        assert!(has_started_again(&before, &now));
+        assert!(!has_started_again(&now, &before));
+        assert!(!has_started_again(&now, &now));
+    }
+
+    #[test]
+    fn bytes_that_are_no_command_are_no_refusal_of_one_that_was_understood() {
+        let before = Rejected::default();
+        let now = Rejected {
+            garbage: 1,
+            ..before
+        };
+        assert_eq!(refused(&before, &now), None);
+        assert!(is_damaged(&before, &now) && refusal(&before, &now).is_some());
     }
 }

@@ -1,9 +1,10 @@
 //! A session: what a command does from the first message to the end.
 
+use std::mem;
 use std::time::Instant;
 
 use drivers::Command;
-use drivers::link::{Frame, Message};
+use drivers::link::{Frame, Message, Rejected};
 use haptic_control::{Mode, Request, SceneKind};
 use terminal::failure::Failure;
 use terminal::output::{note, print_to_reader};
@@ -13,7 +14,8 @@ use crate::clock::{Clock, Limit};
 use crate::interrupt;
 use crate::pace::Pace;
 use crate::record::Recorder;
-use crate::refusal::Sent;
+use crate::refusal::NOISE;
+use crate::sent::{ATTEMPTS, Order, Sent};
 use crate::timed::Change;
 use crate::watch::{Every, line, state};
 
@@ -204,10 +206,8 @@ fn follow(
     } = plan;
     let mut sent = Sent::new(*rejected, scene, board.asked());
     if let Some(scene) = scene.filter(|_| !interrupt::came()) {
-        board.send(Command::Request(Request::Select(scene.number())))?;
-        // The answer has the counts of refused commands.
-        board.send(Command::Identify)?;
-        sent.add(format!("scene {scene}"));
+        let select = Command::Request(Request::Select(scene.number()));
+        order(board, &mut sent, format!("scene {scene}"), select, 1)?;
     }
     let mut starts = scene.is_some_and(|scene| scene != SceneKind::Off);
     let patience = board.patience();
@@ -219,7 +219,7 @@ fn follow(
     let mut clock = Clock::new(hello.rate);
     let (mut heard, mut mode, mut tick) = (Instant::now(), None, None);
     // It comes after its frame: a line has that of the frame before.
-    let mut supply = None;
+    let (mut supply, mut is_identity) = (None, false);
     while !interrupt::came() {
         if keeps_alive && pace.is_due(Instant::now(), tick) {
             board.send(Command::Request(Request::KeepAlive))?;
@@ -231,10 +231,15 @@ fn follow(
             continue;
         };
         sink(message);
+        // The counts after an identity are those of its answer.
+        let is_answer = mem::replace(&mut is_identity, matches!(message, Message::Hello(_)));
         if let Message::Rejected(now) = message
             && keeps_alive
         {
-            sent.check(&now)?;
+            match is_answer {
+                true => again(board, &mut sent, &now)?,
+                false => sent.report(&now)?,
+            }
         }
         if let Message::Supply(now) = message {
             supply = Some(now.volts);
@@ -267,15 +272,57 @@ fn follow(
         }
         let elapsed = clock.elapsed(frame.tick);
         while let Some((_, change)) = changes.pop_if(|(at, _)| *at <= elapsed) {
-            board.send(change.command())?;
-            board.send(Command::Identify)?;
-            sent.add(change.to_string());
+            order(board, &mut sent, change.to_string(), change.command(), 1)?;
         }
         if seconds.is_some_and(|seconds| elapsed >= seconds) {
             break;
         }
     }
     Ok(())
+}
+
+/// Sends a command for the first or a later time, and a question whose answer has the counts of what the board rejected.
+fn order(
+    board: &mut Board,
+    sent: &mut Sent,
+    name: String,
+    command: Command,
+    times: u32,
+) -> Result<(), Failure> {
+    board.send(command)?;
+    board.send(Command::Identify)?;
+    sent.add(Order {
+        name,
+        command,
+        times,
+    });
+    Ok(())
+}
+
+/// Takes the counts of an answer, and sends a command again that may have been damaged. The frames tell whether a scene
+/// was selected.
+///
+/// # Errors
+/// [`Failure::Check`] if the board has refused a command, [`Failure::Input`] if the connection is lost.
+fn again(board: &mut Board, sent: &mut Sent, now: &Rejected) -> Result<(), Failure> {
+    match sent.answer(now)? {
+        None
+        | Some(Order {
+            command: Command::Request(_),
+            ..
+        }) => Ok(()),
+        Some(Order { name, times, .. }) if times >= ATTEMPTS => {
+            board.note(format_args!(
+                "{name}: sent {times} times, and each time bytes that are no command reached the board; {NOISE}"
+            ));
+            Ok(())
+        }
+        Some(Order {
+            name,
+            command,
+            times,
+        }) => order(board, sent, name, command, times + 1),
+    }
 }
 
 /// Shows a line of text: beside a recording on standard output, as a note. Whether somebody reads on.

@@ -1,5 +1,7 @@
 //! Commands that a board gets, and the end of a session.
 
+use std::process::Output;
+
 use drivers::Command;
 use haptic_control::{Mode, Request};
 
@@ -238,19 +240,59 @@ fn changes_of_one_time_keep_their_order() {
     assert_eq!(values.collect::<Vec<_>>(), [0.1, 0.2]);
 }
 
-/// A session that sends no command is not the one whose command was damaged.
+/// Another program at the debug probe, or noise on a line that damages no command.
 #[test]
-fn noise_on_the_command_channel_ends_no_session_that_only_listens() {
-    let noisy = || {
-        Board::new(Script {
+fn bytes_that_are_no_command_end_no_session() {
+    let tune = ["select", "wall", "--tune", "stiffness=0.2@0.2"];
+    for arguments in [&["watch"][..], &["arm"], &tune] {
+        let board = Board::new(Script {
             garbles: true,
             ..Script::default()
-        })
+        });
+        let (output, _) = board.run(&[arguments, &["--seconds", "0.5"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {output:?}");
+    }
+}
+
+/// Changes that arrive damaged: one, and each.
+#[test]
+fn change_that_may_be_damaged_is_sent_again() {
+    const SAID: &str = "check the line of the board, and end what writes to its debug probe";
+    let number = |commands: &[Command]| {
+        let values = commands.iter();
+        values
+            .filter(|it| matches!(it, Command::Tune { .. }))
+            .count()
     };
-    let (output, _) = noisy().run(&["watch", "--seconds", "0.5"]);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let (output, _) = noisy().run(&["arm", "--seconds", "0.5"]);
+    for (damages, sent) in [(1, 2), (9, 4)] {
+        let board = || {
+            Board::new(Script {
+                damages,
+                ..Script::default()
+            })
+        };
+        let said = |output: &Output| String::from_utf8(output.stderr.clone()).unwrap();
+        let (output, commands) = board().run(&["tune", "wall", "stiffness", "0.2"]);
+        assert_eq!(output.status.code(), Some(i32::from(damages == 9)));
+        assert_eq!(number(&commands), sent);
+        assert_eq!(said(&output).contains(SAID), damages == 9, "{output:?}");
+        let tune = ["select", "wall", "--tune", "stiffness=0.2@0.1"];
+        let (output, commands) = board().run(&[&tune[..], &["--seconds", "2"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert_eq!(number(&commands), sent);
+        assert_eq!(said(&output).contains(SAID), damages == 9, "{output:?}");
+    }
+}
+
+/// The counts of a board that has started again begin at 0.
+#[test]
+fn reset_of_the_board_is_no_refusal() {
+    let board = Board::new(Script {
+        starts_again: Some(300),
+        ..Script::default()
+    });
+    let (output, _) = board.run(&["arm", "--seconds", "10"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let said = "the board refuses a command: the command arrived damaged";
-    assert_eq!(error(&output), said);
+    let said = error(&output);
+    assert!(said.starts_with("the board stopped: state boot"), "{said}");
 }

@@ -62,6 +62,8 @@ struct Player<'a> {
     last: Option<u32>,
     /// Frame at which the command `select` came.
     selected: Option<u32>,
+    /// Commands with a value so far.
+    values: u32,
     /// Commands `select` so far.
     selections: u32,
     /// End of the pause.
@@ -91,6 +93,7 @@ impl<'a> Player<'a> {
             asked: None,
             last: None,
             selected: None,
+            values: 0,
             selections: 0,
             quiet_until: None,
             late: Vec::new(),
@@ -133,7 +136,11 @@ impl<'a> Player<'a> {
                 self.selections += 1;
             }
             Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
-                self.rejected.out_of_bounds += u32::from(self.script.refuses);
+                self.values += 1;
+                match self.values <= self.script.damages {
+                    true => self.rejected.garbage += 12,
+                    false => self.rejected.out_of_bounds += u32::from(self.script.refuses),
+                }
             }
             Command::Set { setting, value } => {
                 if let Some(setting) = Setting::from_number(setting) {
@@ -269,6 +276,10 @@ impl<'a> Player<'a> {
         self.seq += 1;
         if number.is_some() && number == self.script.starts_again {
             (self.seq, self.asked) = (0, None);
+            (self.state, self.rejected) = (Mode::Boot, Rejected::default());
+            // The answer to a question from before, ahead of the first frame.
+            let told = [self.hello().into(), self.rejected.into()].map(|it| self.message(it));
+            self.bytes.extend(told.concat());
         }
     }
 

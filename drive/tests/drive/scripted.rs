@@ -60,6 +60,8 @@ pub(super) struct Script {
     pub(super) settings: Settings,
     /// Whether the board takes the command `disarm`.
     pub(super) disarms: bool,
+    /// So many of the first commands with a value arrive damaged.
+    pub(super) damages: u32,
     /// Whether noise reaches the command channel, which the board tells every 100 frames.
     pub(super) garbles: bool,
 }
@@ -98,6 +100,7 @@ impl Default for Script {
             strokes_end_after: None,
             settings: Settings::DEFAULT,
             disarms: true,
+            damages: 0,
             garbles: false,
         }
     }
