@@ -14,8 +14,9 @@ use crate::clock::{Clock, Limit};
 use crate::interrupt;
 use crate::pace::Pace;
 use crate::record::Recorder;
-use crate::refusal::NOISE;
+use crate::refusal::{NOISE, UNVERIFIED};
 use crate::sent::{ATTEMPTS, Order, Sent};
+use crate::settings;
 use crate::timed::Change;
 use crate::watch::{Every, line, state};
 
@@ -68,9 +69,21 @@ impl Plan {
 /// connection is lost or the plan cannot be followed. A board that was armed is disarmed in every case.
 pub(crate) fn armed(board: &mut Board, answer: &Answer, plan: Plan) -> Result<(), Failure> {
     plan.check()?;
+    admits(board, plan.scene)?;
     interrupt::take();
     arm(board, answer)?;
     ended(board, answer, plan)
+}
+
+/// Checks that the board admits a scene: it refuses one in closed loop until its signs are verified, which it would tell
+/// once it is armed.
+fn admits(board: &mut Board, scene: Option<SceneKind>) -> Result<(), Failure> {
+    match scene.filter(|scene| scene.is_closed_loop()) {
+        Some(scene) if !settings::present(board)?.are_signs_verified() => Err(Failure::Check(
+            format!("scene {scene}: the board refuses it: {UNVERIFIED}"),
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Arms the board, renders a scene if the plan has one, and disarms at the end; without keep-alives in the

@@ -31,7 +31,7 @@ fn board(measures: [(f32, f32); 2]) -> Board {
 fn afterwards(commands: &[Command]) -> Vec<Command> {
     let commands = deduplicated(sorted(commands).0);
     let excite = Command::Request(Request::Select(SceneKind::Excite.number()));
-    let [DISARM, Command::Settings, ARM, select, DISARM, rest @ ..] = &commands[..] else {
+    let [DISARM, ARM, select, DISARM, rest @ ..] = &commands[..] else {
         panic!("{commands:?}");
     };
     assert_eq!(*select, excite);

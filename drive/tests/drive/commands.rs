@@ -2,7 +2,7 @@
 
 use std::process::Output;
 
-use drivers::Command;
+use drivers::{Command, Settings};
 use haptic_control::{Mode, Request};
 
 use crate::scripted::{Board, Script, error};
@@ -16,11 +16,11 @@ fn board() -> Board {
     Board::new(Script::default())
 }
 
-/// The commands without questions and keep-alives, and the number of keep-alives.
+/// The commands without questions, for settings too, and keep-alives, and the number of keep-alives.
 pub(super) fn sorted(commands: &[Command]) -> (Vec<Command>, usize) {
     let (alive, others): (Vec<_>, Vec<_>) = commands
         .iter()
-        .filter(|command| **command != Command::Identify)
+        .filter(|command| ![Command::Identify, Command::Settings].contains(command))
         .partition(|command| **command == KEEP_ALIVE);
     (others, alive.len())
 }
@@ -295,4 +295,25 @@ fn reset_of_the_board_is_no_refusal() {
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let said = error(&output);
     assert!(said.starts_with("the board stopped: state boot"), "{said}");
+}
+
+#[test]
+fn scene_in_closed_loop_is_refused_before_the_board_is_armed_if_the_signs_are_not_verified() {
+    let blank = || {
+        Board::new(Script {
+            settings: Settings::DEFAULT,
+            ..Script::default()
+        })
+    };
+    let (output, commands) = blank().run(&["select", "wall", "--seconds", "0.5"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(
+        error(&output),
+        "scene wall: the board refuses it: the signs of encoders and currents have not been verified; run cargo \
+         drive bring-up"
+    );
+    assert_eq!(sorted(&commands), (Vec::new(), 0));
+    // A scene without feedback needs no signs.
+    let (output, _) = blank().run(&["select", "excite", "--seconds", "0.5"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
 }

@@ -98,7 +98,7 @@ impl Default for Script {
             turns: None,
             supply: None,
             strokes_end_after: None,
-            settings: Settings::DEFAULT,
+            settings: Settings::COMMISSIONED,
             disarms: true,
             damages: 0,
             garbles: false,
