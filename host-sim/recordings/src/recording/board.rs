@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
+use super::fields::is_without_value;
 use super::options::ReadOptions;
 use super::records::Records;
 use crate::telemetry::{COLUMNS, LearnedLine};
@@ -15,6 +16,9 @@ pub struct BoardColumns {
     /// `learned_damping`, `learned_friction`, `learned_torque_constant` of the last row that has them.
     pub learned: Option<LearnedLine>,
 }
+
+/// Columns with a number in each row.
+const WHOLE: [&str; 4] = ["counts_large", "counts_small", "state", "cause"];
 
 /// Columns of [`BoardColumns::learned`], empty in most rows.
 const LEARNED: [&str; 3] = [
@@ -42,7 +46,7 @@ impl BoardColumns {
         BoardReader::open(input, name)?.next(usize::MAX)
     }
 
-    /// The column called `name`, a field of telemetry frames.
+    /// The column called `name`, a field of telemetry frames. A value that was not finite is NaN.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.get(name).map(Vec::as_slice)
@@ -100,7 +104,12 @@ impl<'a> BoardReader<'a> {
                 break;
             };
             for &(place, column) in &self.places {
-                let number = row.number(column, place)?;
+                let is_unknown =
+                    !WHOLE.contains(&column) && is_without_value(row.text(column, place)?);
+                let number = match is_unknown {
+                    true => f64::NAN,
+                    false => row.number(column, place)?,
+                };
                 if let Some(values) = board.columns.get_mut(column) {
                     values.push(number);
                 }
@@ -145,6 +154,16 @@ mod tests {
                     fill the field";
         assert_eq!(error.to_string(), said);
         let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
+        // A recording from before such fields were empty.
+        for none in ["", "NaN"] {
+            let unknown = text.replace("-0.25", none);
+            let board = BoardColumns::parse(unknown.as_bytes(), "r.csv").unwrap();
+            let torque = board.column("torque").unwrap();
+            assert!(torque[0] == 0.5 && torque[1].is_nan(), "{torque:?}");
+        }
+        let stateless = text.replace(",3\n", ",\n");
+        let error = BoardColumns::parse(stateless.as_bytes(), "r.csv").unwrap_err();
+        assert!(error.to_string().contains("column state: ''"), "{error}");
         let bad = text.replace("-0.25", "x");
         let error = BoardColumns::parse(bad.as_bytes(), "r.csv").unwrap_err();
         let said = "r.csv: line 3: column torque: 'x' is not a number; correct the field, or remove the row";

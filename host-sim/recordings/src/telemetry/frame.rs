@@ -95,12 +95,12 @@ trait Field: Sized {
     /// The value under either name.
     fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String>;
 
-    /// The value in a recording, if there is one.
+    /// The value in a recording, if there is one; an empty text stands for one that is not finite.
     fn text(&self) -> Option<String>;
 }
 
 macro_rules! numbers {
-    ($($type:ty)+) => {$(
+    ($($type:ty, $text:expr;)+) => {$(
         impl Field for $type {
             type Wire = Self;
 
@@ -113,13 +113,27 @@ macro_rules! numbers {
             }
 
             fn text(&self) -> Option<String> {
-                Some(self.to_string())
+                let text: fn(&Self) -> String = $text;
+                Some(text(self))
             }
         }
     )+};
 }
 
-numbers!(u8 u16 u32 f32);
+numbers! {
+    u8, Self::to_string;
+    u16, Self::to_string;
+    u32, Self::to_string;
+    f32, finite;
+}
+
+/// A value as text, which is empty if it is not finite.
+fn finite(value: &f32) -> String {
+    match value.is_finite() {
+        true => value.to_string(),
+        false => String::new(),
+    }
+}
 
 /// A field that older images do not have.
 impl<T: Field> Field for Option<T> {
