@@ -1,14 +1,11 @@
 //! The desk at which the messages of a board become rows for the pages.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use channels::Values;
 use drive::refusal::refusal;
 use drivers::Command;
 use drivers::link::{Frame, Hello, Message, Rejected};
-use experiments::transparency::Fingertip;
 use haptic_control::{Mode, Request, Stop};
 use serde_json::{Value, json};
 use simulation::device::Device;
@@ -23,7 +20,7 @@ use crate::order::Order;
 use crate::parameters::Tuned;
 use crate::recorder::Recorder;
 use crate::selection::Selection;
-use crate::tactile::Tactile;
+use crate::values::{Conversion, Truth};
 
 /// Telemetry frames of a second.
 pub(crate) const FRAMES_HZ: f64 = 1e3;
@@ -32,28 +29,10 @@ pub(crate) const GAP_S: f64 = 2.5 / FRAMES_HZ;
 /// Interval of the status.
 const STATUS: Duration = Duration::from_millis(100);
 
-/// What only the emulated board knows of a frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Truth {
-    /// Virtual time, s.
-    pub(crate) t: f64,
-    pub(crate) large: [f64; 2],
-    pub(crate) handle: [f64; 2],
-    /// Torque on the hand, N.m.
-    pub(crate) felt: f64,
-    /// Currents of the motors, A.
-    pub(crate) currents: [f64; 2],
-    /// Largest number of instructions of a tick since the frame before.
-    pub(crate) instructions: u32,
-    /// Intended angle of the hand, rad.
-    pub(crate) hand: Option<f64>,
-}
-
 /// The desk of a source.
 pub(crate) struct Desk {
     pub(crate) hub: Arc<Hub>,
-    turn_rad: [f64; 2],
-    fingertip: Fingertip,
+    conversion: Conversion,
     estimators: Estimators,
     batch: Batch,
     recorder: Option<Recorder>,
@@ -66,7 +45,6 @@ pub(crate) struct Desk {
     refusal: Option<(&'static str, u32)>,
     selection: Selection,
     tuned: Tuned,
-    tactile: Tactile,
     told: Instant,
     pub(crate) fault: Option<FaultWatch>,
     bench: Bench,
@@ -78,12 +56,9 @@ impl Desk {
     /// # Errors
     /// [`Failure::Input`] if an estimator cannot be built.
     pub(crate) fn new(hub: Arc<Hub>, device: &Device) -> Result<Self, Failure> {
-        let stages = &device.stages;
-        let turns = [stages.large.counts_per_rev, stages.small.counts_per_rev];
         Ok(Self {
             hub,
-            turn_rad: turns.map(|counts| TAU / f64::from(counts)),
-            fingertip: Fingertip::new(device),
+            conversion: Conversion::new(device),
             estimators: Estimators::new(device, FRAMES_HZ)?,
             batch: Batch::new(),
             recorder: None,
@@ -94,7 +69,6 @@ impl Desk {
             refusal: None,
             selection: Selection::NONE,
             tuned: Tuned::new(),
-            tactile: Tactile::new(),
             told: Instant::now(),
             fault: None,
             bench: Bench::default(),
@@ -240,10 +214,7 @@ impl Desk {
         let before = self.last.as_ref().and_then(mode);
         self.selection.frame(before, mode(frame), self.t);
         self.last = Some(*frame);
-        let mut values = self.values(frame);
-        if let Some(truth) = truth {
-            self.add_truth(&mut values, truth);
-        }
+        let values = self.conversion.values(self.t, frame, truth);
         if let Some(watch) = &mut self.fault {
             watch.frame((self.t * 1e9) as u64, frame, values.force);
         }
@@ -261,46 +232,6 @@ impl Desk {
                 self.end_recording();
             }
         }
-    }
-
-    fn values(&self, frame: &Frame) -> Values {
-        let angle = |counts: u32, turn: f64| f64::from(counts as i32) * turn;
-        // The board sends zeros where the scene needs no velocity.
-        let needed = |value: f32| match frame.sigma_large {
-            0.0 => f64::NAN,
-            _ => value.into(),
-        };
-        Values {
-            t: self.t,
-            velocity_large: needed(frame.velocity_large),
-            sigma_large: needed(frame.sigma_large),
-            velocity_small: frame.velocity_small.into(),
-            torque: frame.torque.into(),
-            current: frame.current.into(),
-            current_small: frame.current_small.into(),
-            cycles: frame.cycles.into(),
-            large_angle: angle(frame.counts_large, self.turn_rad[0]),
-            handle_angle: angle(frame.counts_small, self.turn_rad[1]),
-            state: frame.state.into(),
-            cause: frame.cause.into(),
-            estimator: frame.estimator.into(),
-            overruns: frame.overruns.into(),
-            drops: frame.drops.into(),
-            ..Values::default()
-        }
-    }
-
-    fn add_truth(&mut self, values: &mut Values, truth: &Truth) {
-        [values.large_angle, values.true_omega] = truth.large;
-        [values.handle_angle, values.true_handle] = truth.handle;
-        [values.current_large_true, values.current_small_true] = truth.currents;
-        values.felt = truth.felt;
-        values.force = truth.felt * self.fingertip.mn_per_nm;
-        values.parasitic = (truth.felt - values.torque) * self.fingertip.mn_per_nm;
-        values.instructions = truth.instructions.into();
-        values.hand_angle = truth.hand.unwrap_or(f64::NAN);
-        let seq = self.last.map_or(0, |frame| frame.seq);
-        values.tactile = self.tactile.next(values.parasitic, seq);
     }
 
     /// Sends the rows and the status that are due. `more` is what the source adds to the status.

@@ -20,3 +20,4 @@ mod source;
 mod stream;
 mod tactile;
 mod token;
+mod values;

@@ -18,11 +18,12 @@ use virtual_board::run::Setup;
 use super::Source;
 use super::pacer::Pacer;
 use super::truths::Truths;
-use crate::desk::{Desk, FRAMES_HZ, GAP_S, Truth};
+use crate::desk::{Desk, FRAMES_HZ, GAP_S};
 use crate::facts;
 use crate::fault_watch::FaultWatch;
 use crate::hub::Hub;
 use crate::order::Order;
+use crate::values::Truth;
 
 /// Longest run before the board starts again, s: a year.
 const SECONDS: f64 = 3.2e7;
