@@ -4,11 +4,14 @@ use drive::guided::Guided;
 use drive::settings::outcome_words;
 use drivers::link::Message;
 use drivers::{Command, Saved, encode};
-use haptic_control::Request;
+use haptic_control::{Request, Stop};
 use serde_json::{Value, json};
 
 use crate::guide::Guide;
 use crate::order::Order;
+
+/// Why a procedure ends whose page has closed or freezes.
+const NOT_HEARD: &str = "ended, as the page was not heard";
 
 /// Settings and procedures of a board.
 #[derive(Default)]
@@ -26,7 +29,9 @@ impl Bench {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
         self.settings = None;
-        self.abandon();
+        if let Some(guide) = &mut self.guide {
+            guide.restarted();
+        }
     }
 
     /// Takes bytes of the board, before their messages.
@@ -49,6 +54,12 @@ impl Bench {
                     self.settings = Some(std::mem::take(&mut self.coming));
                 }
             }
+            Message::Hello(hello) => {
+                if let (Some(guide), Some(cause)) = (&mut self.guide, Stop::from_code(hello.cause))
+                {
+                    guide.reset(cause);
+                }
+            }
             Message::Stored(stored) => {
                 let words = Saved::from_code(stored.outcome).map_or_else(
                     || format!("outcome {}", stored.outcome),
@@ -62,15 +73,11 @@ impl Bench {
     }
 
     /// Follows an order as far as it is one of the bench; whether it goes on to the board. While a procedure
-    /// runs, the board has no other commander, but the order to disarm ends both. A procedure begins if the board
+    /// runs, the board has no other commander; the order to disarm has ended it before. A procedure begins if the board
     /// `is_known`.
     pub(crate) fn order(&mut self, order: &Order, is_known: bool) -> bool {
         let is_guided = self.guide.as_ref().is_some_and(Guide::runs);
         match order {
-            Order::Disarm => {
-                self.abandon();
-                true
-            }
             Order::Guide { name } => {
                 if let Some(what) = guided(name).filter(|_| is_known && !is_guided) {
                     self.guide = Some(Guide::start(what));
@@ -87,15 +94,16 @@ impl Bench {
             return Vec::new();
         };
         if is_abandoned {
-            guide.abandon();
+            guide.abandon(NOT_HEARD);
             return encode(Command::Request(Request::Disarm)).to_vec();
         }
         guide.take_bytes()
     }
 
-    fn abandon(&mut self) {
+    /// Ends a procedure, as the board is disarmed for this reason.
+    pub(crate) fn abandon(&mut self, why: &str) {
         if let Some(guide) = &mut self.guide {
-            guide.abandon();
+            guide.abandon(why);
         }
     }
 
@@ -116,7 +124,7 @@ pub(crate) fn guided(name: &str) -> Option<Guided> {
 
 #[cfg(test)]
 mod tests {
-    use drivers::link::{Setting, Stored};
+    use drivers::link::{Hello, Setting, Stored};
 
     use super::*;
 
@@ -164,12 +172,42 @@ mod tests {
         };
         assert!(!bench.order(&Order::Alive, true) && !bench.order(&Order::Arm, true));
         assert!(bench.order(&Order::Record { on: true }, true));
+        bench.abandon("ended by Disarm");
         assert!(bench.order(&Order::Disarm, true) && bench.order(&Order::Arm, true));
         let ended = &bench.json()["guide"];
-        assert!(
-            ended["runs"] == false && ended["failure"].is_string(),
-            "{ended}"
+        assert_eq!(
+            (&ended["runs"], &ended["failure"]),
+            (&json!(false), &json!("bring-up: ended by Disarm"))
         );
+    }
+
+    #[test]
+    fn procedure_that_a_reset_ends_has_the_cause_of_the_reset() {
+        let hello = |cause: Stop| {
+            Message::Hello(Hello {
+                cause: cause as u8,
+                ..Hello::default()
+            })
+        };
+        for (cause, said) in [
+            (
+                Stop::Watchdog,
+                "bring-up: the board has started again, cause watchdog",
+            ),
+            (Stop::None, "bring-up: the board has started again"),
+        ] {
+            let mut bench = Bench {
+                guide: Some(Guide::start(Guided::BringUp)),
+                ..Bench::default()
+            };
+            bench.message(&hello(Stop::Jump));
+            bench.restarted();
+            // The page disarms it then, and the next resets are of another time.
+            bench.abandon("ended by Disarm");
+            bench.message(&hello(cause));
+            bench.message(&hello(Stop::Jump));
+            assert_eq!(bench.json()["guide"]["failure"], said);
+        }
     }
 
     #[test]

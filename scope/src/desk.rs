@@ -106,8 +106,32 @@ impl Desk {
         (self.selection, self.tuned) = (Selection::NONE, Tuned::new());
     }
 
+    /// The command that disarms the board. It ends a procedure for this reason.
+    pub(crate) fn disarm(&mut self, why: &str) -> Command {
+        self.bench.abandon(why);
+        self.selection = Selection::NONE;
+        self.refusal = None;
+        Command::Request(Request::Disarm)
+    }
+
+    /// The cause for which the board is in its safe state, by the latest frame.
+    fn stop(&self) -> Option<Stop> {
+        let last = self.last.as_ref()?;
+        let is_safe = Mode::from_code(last.state) == Some(Mode::Safe);
+        Stop::from_code(last.cause).filter(|_| is_safe)
+    }
+
     /// Follows an order as far as the desk does, and returns the command for the board.
     pub(crate) fn order(&mut self, order: &Order) -> Option<Command> {
+        if *order == Order::Disarm {
+            // A stop that the procedure has not seen yet comes before the order.
+            let stopped =
+                |cause: Stop| format!("the board stopped: state safe, cause {}", cause.as_str());
+            let why = self
+                .stop()
+                .map_or_else(|| "ended by Disarm".to_owned(), stopped);
+            return Some(self.disarm(&why));
+        }
         if !self.bench.order(order, self.hello.is_some()) {
             return None;
         }
@@ -133,7 +157,6 @@ impl Desk {
                     self.tuned.set(scene, parameter, value, hello);
                 }
             }
-            Order::Disarm => self.selection = Selection::NONE,
             _ => {}
         }
         let command = order.command()?;
@@ -277,4 +300,36 @@ fn hz(rate: f64) -> u32 {
 fn is_anew(last: &Frame, frame: &Frame) -> bool {
     let goes_back = |from: u32, to: u32| to.wrapping_sub(from).cast_signed() < 0;
     goes_back(last.seq, frame.seq) && goes_back(last.tick, frame.tick)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The thread of a procedure may not have seen the stop yet.
+    #[test]
+    fn procedure_that_a_stop_of_the_board_ends_has_its_cause_although_the_page_disarms() {
+        let of = |state: Mode, cause: Stop| {
+            let (hub, _orders) = Hub::new("token".to_owned(), Value::Null);
+            let mut desk = Desk::new(hub, &Device::default()).expect("a desk");
+            desk.message(Message::Hello(Hello::default()), None);
+            let name = "bring-up".to_owned();
+            assert_eq!(desk.order(&Order::Guide { name }), None);
+            let frame = Frame {
+                state: state as u8,
+                cause: cause as u8,
+                ..Frame::default()
+            };
+            desk.message(Message::Frame(frame), None);
+            let disarm = Command::Request(Request::Disarm);
+            assert_eq!(desk.order(&Order::Disarm), Some(disarm));
+            desk.bench.json()["guide"]["failure"].clone()
+        };
+        let stopped = of(Mode::Safe, Stop::AmplifierFault);
+        assert_eq!(
+            stopped,
+            "bring-up: the board stopped: state safe, cause amplifier-fault"
+        );
+        assert_eq!(of(Mode::Armed, Stop::None), "bring-up: ended by Disarm");
+    }
 }

@@ -5,6 +5,7 @@ use std::thread::{self, JoinHandle};
 
 use drive::guided::Guided;
 use drive::port::{PipeEnd, Port};
+use haptic_control::Stop;
 use serde_json::{Value, json};
 use terminal::failure::Failure;
 
@@ -15,6 +16,8 @@ pub(crate) struct Guide {
     run: Option<Run>,
     /// `None` while it runs and after success.
     failure: Option<String>,
+    /// Whether a reset of the board ended it, whose cause is not known yet.
+    awaits_cause: bool,
 }
 
 /// The thread of a procedure, which holds the other end of the pipe.
@@ -43,6 +46,7 @@ impl Guide {
             lines: Vec::new(),
             run,
             failure,
+            awaits_cause: false,
         }
     }
 
@@ -67,19 +71,48 @@ impl Guide {
         let is_over = run.thread.is_finished();
         let bytes = run.pipe.from.try_iter().flatten().collect();
         self.lines.extend(run.said.try_iter());
-        if is_over && let Some(run) = self.run.take() {
+        if is_over {
+            self.join();
+        }
+        bytes
+    }
+
+    /// Takes the result of a thread that has ended.
+    fn join(&mut self) {
+        if let Some(run) = self.run.take() {
+            self.lines.extend(run.said.try_iter());
             let ended = run.thread.join();
             let ended =
                 ended.unwrap_or_else(|_| Err(Failure::Check("the procedure panicked".to_owned())));
             self.failure = ended.err().map(|failure| failure.to_string());
         }
-        bytes
     }
 
-    /// Ends the procedure where it is. The board has to be disarmed after it.
-    pub(crate) fn abandon(&mut self) {
+    /// Ends the procedure where it is, for this reason; one that has ended already has its own result. The board has to
+    /// be disarmed after it.
+    pub(crate) fn abandon(&mut self, why: &str) {
+        if (self.run.as_ref()).is_some_and(|run| run.thread.is_finished()) {
+            self.join();
+        }
         if self.run.take().is_some() {
-            self.failure = Some(format!("{}: ended by the page", self.what.as_str()));
+            self.failure = Some(format!("{}: {why}", self.what.as_str()));
+        }
+    }
+
+    /// Ends the procedure as the board has started again. Its next identity has the cause.
+    pub(crate) fn restarted(&mut self) {
+        self.awaits_cause |= self.runs();
+        self.abandon("the board has started again");
+    }
+
+    /// Takes the cause of the latest reset, which an identity has.
+    pub(crate) fn reset(&mut self, cause: Stop) {
+        if std::mem::take(&mut self.awaits_cause) && cause != Stop::None {
+            self.failure = Some(format!(
+                "{}: the board has started again, cause {}",
+                self.what.as_str(),
+                cause.as_str()
+            ));
         }
     }
 

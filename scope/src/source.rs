@@ -19,6 +19,11 @@ pub(crate) use recorded::Recorded;
 use crate::hub::Hub;
 use crate::order::Order;
 
+/// Why a procedure ends, and the board is disarmed: it is silent.
+const SILENCE_ENDS: &str = "ended, as the board sends nothing";
+/// Why a procedure ends, and the board is disarmed: the page that commands has gone, or its order found no room.
+const PAGE_LEFT: &str = "ended by the page";
+
 /// A source: it sends rows and a status to the hub, and follows orders.
 pub(crate) trait Source: Send {
     /// What a page has to know of the source.

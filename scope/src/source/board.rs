@@ -15,7 +15,7 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::note;
 
-use super::Source;
+use super::{PAGE_LEFT, SILENCE_ENDS, Source};
 use crate::desk::{Desk, GAP_S};
 use crate::facts;
 use crate::hub::Hub;
@@ -23,6 +23,9 @@ use crate::order::Order;
 
 /// Interval of the question for the identity until it is answered, and of the order to disarm until it is followed.
 const AGAIN: Duration = Duration::from_millis(200);
+
+/// Why a procedure of another program ends.
+const FOUND_ENABLED: &str = "the board was enabled by another program";
 
 /// A board at a port.
 pub(crate) struct RealBoard {
@@ -160,7 +163,7 @@ impl RealBoard {
             }
             // After the orders of the page that has left.
             if desk.hub.take_left() {
-                self.disarm(desk)?;
+                self.disarm(desk, PAGE_LEFT)?;
             }
             let bytes = desk.take_bytes();
             self.write(&bytes)?;
@@ -186,7 +189,7 @@ impl RealBoard {
             Found::Enabled(asked) => asked.elapsed() >= AGAIN,
         };
         if again {
-            self.disarm(desk)?;
+            self.disarm(desk, FOUND_ENABLED)?;
             return Ok(Found::Enabled(Instant::now()));
         }
         Ok(before)
@@ -201,15 +204,13 @@ impl RealBoard {
         }
         let told = silent(self.port.name(), &self.parser);
         note(&told);
-        self.disarm(desk)?;
+        self.disarm(desk, SILENCE_ENDS)?;
         Ok(Some(told))
     }
 
-    fn disarm(&mut self, desk: &mut Desk) -> Result<(), Failure> {
-        match desk.order(&Order::Disarm) {
-            Some(command) => self.send(command),
-            None => Ok(()),
-        }
+    fn disarm(&mut self, desk: &mut Desk, why: &str) -> Result<(), Failure> {
+        let disarm = desk.disarm(why);
+        self.send(disarm)
     }
 
     fn send(&mut self, command: Command) -> Result<(), Failure> {

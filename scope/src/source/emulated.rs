@@ -15,9 +15,9 @@ use virtual_board::image::{HOW_TO_BUILD, Image};
 use virtual_board::live::{self, Acts, Client, Hold, Seen};
 use virtual_board::run::Setup;
 
-use super::Source;
 use super::pacer::Pacer;
 use super::truths::Truths;
+use super::{PAGE_LEFT, SILENCE_ENDS, Source};
 use crate::desk::{Desk, FRAMES_HZ, GAP_S};
 use crate::facts;
 use crate::fault_watch::FaultWatch;
@@ -202,11 +202,8 @@ impl Client for Seat {
         }
         let is_silent = seen.at_ns.saturating_sub(self.heard_ns) >= SILENT_NS;
         let was_silent = mem::replace(&mut self.is_silent, is_silent);
-        if is_silent
-            && !was_silent
-            && let Some(command) = desk.order(&Order::Disarm)
-        {
-            acts.send.extend(encode(command));
+        if is_silent && !was_silent {
+            acts.send.extend(encode(desk.disarm(SILENCE_ENDS)));
         }
         while seen.waiting + acts.send.len() < WAITING
             && let Ok(order) = orders.try_recv()
@@ -231,10 +228,8 @@ impl Client for Seat {
             }
         }
         // After the orders of the page that has left.
-        if desk.hub.take_left()
-            && let Some(command) = desk.order(&Order::Disarm)
-        {
-            acts.send.extend(encode(command));
+        if desk.hub.take_left() {
+            acts.send.extend(encode(desk.disarm(PAGE_LEFT)));
         }
         acts.send.extend(desk.take_bytes());
         if let Some(Order::Hand { at }) = desk.hub.take_hand() {

@@ -31,7 +31,9 @@ pub(crate) const ATTEMPTS: usize = 4;
 /// board not commanded.
 pub(crate) fn is_stalled(failure: &Value) -> bool {
     let failure = failure.to_string();
-    failure.contains("ended by the page") || failure.contains(Stop::CommandTimeout.as_str())
+    let words = ["ended by the page", "the page was not heard"];
+    words.iter().any(|words| failure.contains(words))
+        || failure.contains(Stop::CommandTimeout.as_str())
 }
 
 /// A file of its own for this process in the folder of the build.
