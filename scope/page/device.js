@@ -16,8 +16,12 @@ class DeviceView {
 
   geometry() {
     const { width, height } = this;
-    const radius = Math.min(height * 0.36, width * 0.25);
-    return { x: width - radius - 34, y: height * 0.53, radius };
+    const radius = Math.min(height * 0.36, width * 0.25), y = height * 0.53;
+    // In a narrow card all parts are smaller, and stay beside each other.
+    const scale = Math.min(1, width / 380), x = width - radius - 34 * scale;
+    const motor = { x: 56 * scale, y, radius: 40 * scale };
+    const coupler = { x: (motor.x + motor.radius + x - radius) / 2, y, radius: 22 * scale };
+    return { x, y, radius, motor, coupler };
   }
 
   pointer(e) {
@@ -85,18 +89,17 @@ class DeviceView {
     c.clearRect(0, 0, this.width, this.height);
     const value = (name) => this.store.latest(name);
     const handle = value("handle_angle") || 0, large = value("large_angle") || 0, force = value("force");
-    const g = this.geometry(), motor = { x: 44 + 12, y: g.y, radius: 40 };
-    const middle = (motor.x + motor.radius + g.x - g.radius) / 2;
+    const g = this.geometry(), { motor, coupler } = g;
     c.font = "12px system-ui, sans-serif"; c.textAlign = "center"; c.lineWidth = 1.5;
     // Shaft, large motor, coupler.
     c.strokeStyle = ink("--shade"); c.fillStyle = ink("--metal");
     c.fillRect(motor.x, g.y - 4, g.x - motor.x, 8);
     disc(c, motor.x, motor.y, motor.radius, large, ink("--metal"), ink("--accent"), 3);
-    disc(c, middle, g.y, 22, large, ink("--metal"), ink("--accent"), 4);
-    disc(c, middle, g.y, 13, handle, ink("--card"), ink("--warm"), 2);
+    disc(c, coupler.x, coupler.y, coupler.radius, large, ink("--metal"), ink("--accent"), 4);
+    disc(c, coupler.x, coupler.y, 0.6 * coupler.radius, handle, ink("--card"), ink("--warm"), 2);
     c.fillStyle = ink("--muted");
     c.fillText("large motor", motor.x, motor.y + motor.radius + 16);
-    c.fillText("coupler", middle, g.y + 38);
+    c.fillText("coupler", coupler.x, coupler.y + coupler.radius + 16);
     this.drawWall(c, g, ink);
     c.strokeStyle = ink("--shade"); c.lineWidth = 1.5;
     disc(c, g.x, g.y, g.radius, handle, ink("--card"), ink("--line"), 0);
