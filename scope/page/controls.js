@@ -135,9 +135,10 @@ class Controls {
     $("others").replaceChildren(...this.facts.estimators.map((e) => {
       const label = document.createElement("label"), box = document.createElement("input"), mark = document.createElement("i");
       box.type = "checkbox"; box.checked = this.plots.chosen.has(e.name); box.dataset.estimator = e.name;
-      mark.style.background = e.colour;
+      const paint = () => { mark.style.background = this.plots.colour(e.name); };
+      paint();
       label.title = e.summary;
-      box.onchange = () => { this.plots.chosen[box.checked ? "add" : "delete"](e.name); this.plots.build(); };
+      box.onchange = () => { this.plots.choose(e.name, box.checked); paint(); };
       label.append(box, mark, e.name);
       return label;
     }));

@@ -1,12 +1,17 @@
 // The plots: what each one shows, and their common window.
 
+// The colours of series: --s0 is that of the estimate in charge, the others are for those that are chosen. From the
+// second round on the lines are dashed.
+const COLOURS = 10, DASHES = [[], [10, 5], [2, 3], [8, 3, 2, 3]];
+
 function plotList(facts, store, chosen) {
   const at = (name) => { const values = store.values[store.column[name]]; return (k) => values[k]; };
   const times = (name, factor) => { const get = at(name); return (k) => get(k) * factor; };
   const truth = at("true_omega"), { weber, floor, mn_per_rad_s: force } = facts.interval;
   const edge = (side) => (k) => truth(k) + side * (weber * Math.abs(truth(k)) + floor);
   const error = (name) => { const get = at(name); return (k) => (get(k) - truth(k)) * force; };
-  const others = facts.estimators.filter((e) => chosen.has(e.name));
+  const others = facts.estimators.filter((e) => chosen.has(e.name))
+    .map((e) => ({ name: e.name, colour: chosenColour(chosen.get(e.name)), dash: chosenDash(chosen.get(e.name)) }));
   const line = (label, colour, get, more) => ({ label, colour, get, ...more });
   const has = facts.source.kind === "emulated";
   const limit = facts.device.threshold_mn;
@@ -14,39 +19,55 @@ function plotList(facts, store, chosen) {
     { id: "velocity", title: "Velocity of the large motor, rad/s", height: 230, least: 0.1, series: [
       line("interval", "--band", edge(1), { edge: true }), line("", "--band", edge(-1), { edge: true }),
       ...others.map((e) => line(e.name, e.colour, at("estimate:" + e.name), { dash: e.dash })),
-      line("in charge", "#d55e00", at("velocity_large"), { width: 1.6 }), line("true", "--ink", truth, { width: 1.6 }),
+      line("in charge", "--s0", at("velocity_large"), { width: 1.6 }), line("true", "--ink", truth, { width: 1.6 }),
     ] },
     { id: "error", title: `Force of each estimator's error through the coupler, mN (a fingertip notices ${limit} mN)`, height: 170, least: 1, needsTruth: true, mark: limit, series: [
       ...others.map((e) => line(e.name, e.colour, error("estimate:" + e.name), { dash: e.dash })),
-      line("in charge", "#d55e00", error("velocity_large"), { width: 1.6 }),
+      line("in charge", "--s0", error("velocity_large"), { width: 1.6 }),
     ] },
     { id: "force", title: "Force at the fingertip, mN", height: 170, least: 1, mark: limit, series: [
-      line("felt", "#0072b2", at("force"), { width: 1.6 }), line("parasitic", "#d55e00", at("parasitic")),
-      line("50–500 Hz RMS", "#009e73", at("tactile")),
+      line("felt", "--s1", at("force"), { width: 1.6 }), line("parasitic", "--s0", at("parasitic")),
+      line("50–500 Hz RMS", "--s3", at("tactile")),
     ] },
     { id: "torque", title: "Torque on the handle, mN·m", height: 150, least: 0.1, series: [
-      line("wanted", "--ink", times("torque", 1e3)), line("felt", "#0072b2", times("felt", 1e3)),
+      line("wanted", "--ink", times("torque", 1e3)), line("felt", "--s1", times("felt", 1e3)),
     ] },
     { id: "current", title: "Currents, A", height: 150, least: 0.01, series: [
-      line("large commanded", "#e69f00", at("current")), line("large", "#d55e00", at("current_large_true")),
-      line("small commanded", "#56b4e9", at("current_small")), line("small", "#0072b2", at("current_small_true")),
+      line("large commanded", "--s4", at("current")), line("large", "--s0", at("current_large_true")),
+      line("small commanded", "--s2", at("current_small")), line("small", "--s1", at("current_small_true")),
     ] },
     { id: "cost", title: has ? "Instructions per control tick, most of a frame" : "Cycles of the longest control tick", height: 120, least: 10, series: [
-      line(has ? "instructions" : "cycles", "#cc79a7", at(has ? "instructions" : "cycles")),
+      line(has ? "instructions" : "cycles", "--s3", at(has ? "instructions" : "cycles")),
     ] },
   ];
   return list.filter((plot) => !(plot.needsTruth && facts.source.kind === "board"));
 }
 
+function chosenColour(place) { return `--s${1 + (place % (COLOURS - 1))}`; }
+function chosenDash(place) { return DASHES[Math.floor(place / (COLOURS - 1)) % DASHES.length]; }
+
 class Plots {
   constructor(host, facts, store) {
     this.host = host; this.facts = facts; this.store = store;
-    this.chosen = new Set(["finite-difference"]);
+    // The estimators that are shown, each with its place among the colours.
+    this.chosen = new Map([["finite-difference", 0]]);
     this.seconds = 5; this.range = null; this.plots = []; this.frames = 0;
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.build());
     new ResizeObserver(() => this.resize()).observe(host);
     this.build();
   }
+
+  // Shows an estimator in the first colour that is free, or shows it no more.
+  choose(name, is) {
+    const taken = new Set(this.chosen.values());
+    let place = 0;
+    while (taken.has(place)) place++;
+    if (is) this.chosen.set(name, place); else this.chosen.delete(name);
+    this.build();
+  }
+
+  // The colour of an estimator that is shown, as a value of CSS; "" of another one.
+  colour(name) { return this.chosen.has(name) ? `var(${chosenColour(this.chosen.get(name))})` : ""; }
 
   // Pauses at the present window, or at a zoomed one; `null` follows the board again.
   hold(range) { this.range = range; this.changed?.(); }
@@ -59,7 +80,7 @@ class Plots {
     this.host.replaceChildren();
     this.plots = plotList(this.facts, this.store, this.chosen).map((spec) => {
       const card = document.createElement("div");
-      card.className = "card plot";
+      card.className = spec.series[0].edge ? "card plot banded" : "card plot";
       card.id = "plot-" + spec.id;
       const title = document.createElement("h2");
       title.textContent = spec.title;

@@ -3,7 +3,6 @@
 use channels::CHANNELS;
 use drive::guided::Guided;
 use drivers::Setting;
-use estimator_catalogue::{Colour, Dash};
 use experiments::compare::interval;
 use firmware_app::config::{DEVICE, RATE};
 use firmware_app::large;
@@ -82,19 +81,8 @@ fn setting_facts(setting: Setting) -> Value {
 
 fn estimators() -> Vec<Value> {
     let kinds = Estimators::kinds();
-    let row = kinds.iter().map(|kind| {
-        let Colour(r, g, b) = kind.colour;
-        json!({
-            "name": kind.name,
-            "summary": kind.summary,
-            "colour": format!("#{r:02x}{g:02x}{b:02x}"),
-            "dash": match kind.dash {
-                Dash::Solid => json!([]),
-                Dash::Dashed => json!([10, 5]),
-                Dash::Dotted => json!([2, 3]),
-                Dash::Mixed => json!([8, 3, 2, 3]),
-            },
-        })
-    });
+    let row = kinds
+        .iter()
+        .map(|kind| json!({ "name": kind.name, "summary": kind.summary }));
     row.collect()
 }
