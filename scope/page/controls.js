@@ -16,6 +16,8 @@ class Controls {
     $("commands").hidden = $("record-card").hidden = isRecorded;
     $("transport").hidden = !isRecorded;
     $("fault-card").hidden = !facts.faults.length;
+    // A board does not report the force.
+    $("force").parentElement.hidden = $("meter").hidden = source.kind === "board";
     $("hint").hidden = $("restart").hidden = source.kind !== "emulated";
     this.makeScenes(); this.makeEstimators(); this.makeFaults(); this.makeOthers(); this.makeTransport();
     this.makePlotBar();

@@ -58,7 +58,8 @@ function showNumbers(store, controls) {
   $("meter").value = Math.min(40, Math.abs(force) || 0);
   const parasitic = store.latest("parasitic"), tactile = store.latest("tactile");
   const words = (value) => `${value.toFixed(1)} mN (${Math.abs(value) < limit ? "below" : "above"} the ${limit} mN that a fingertip notices)`;
-  setText("felt-words", Number.isFinite(parasitic) ? `Not commanded by the scene: ${words(parasitic)}${Number.isFinite(tactile) ? `; roughness ${tactile.toFixed(1)} mN` : ""}.` : "");
+  const isBoard = scope.facts.source.kind === "board";
+  setText("felt-words", isBoard ? "A board does not report the force at the fingertip. The torque that its scene wants has a plot." : Number.isFinite(parasitic) ? `Not commanded by the scene: ${words(parasitic)}${Number.isFinite(tactile) ? `; roughness ${tactile.toFixed(1)} mN` : ""}.` : "");
   const number = store.latest("estimator");
   const buttons = [...$("estimators").children];
   buttons.forEach((b, k) => {

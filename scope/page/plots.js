@@ -13,34 +13,37 @@ function plotList(facts, store, chosen) {
   const others = facts.estimators.filter((e) => chosen.has(e.name))
     .map((e) => ({ name: e.name, colour: chosenColour(chosen.get(e.name)), dash: chosenDash(chosen.get(e.name)) }));
   const line = (label, colour, get, more) => ({ label, colour, get, ...more });
-  const has = facts.source.kind === "emulated";
+  const { kind } = facts.source, has = kind === "emulated";
+  // What a simulation alone knows, or a recording may have.
+  const known = (is, ...lines) => (is ? lines : []);
   const limit = facts.device.threshold_mn;
   const list = [
     { id: "velocity", title: "Velocity of the large motor, rad/s", height: 230, least: 0.1, series: [
-      line("interval", "--band", edge(1), { edge: true }), line("", "--band", edge(-1), { edge: true }),
+      ...known(kind !== "board", line("interval", "--band", edge(1), { edge: true }), line("", "--band", edge(-1), { edge: true })),
       ...others.map((e) => line(e.name, e.colour, at("estimate:" + e.name), { dash: e.dash })),
-      line("in charge", "--s0", at("velocity_large"), { width: 1.6 }), line("true", "--ink", truth, { width: 1.6 }),
+      line("in charge", "--s0", at("velocity_large"), { width: 1.6 }),
+      ...known(kind !== "board", line("true", "--ink", truth, { width: 1.6 })),
     ] },
-    { id: "error", title: `Force of each estimator's error through the coupler, mN (a fingertip notices ${limit} mN)`, height: 170, least: 1, needsTruth: true, mark: limit, series: [
+    { id: "error", title: `Force of each estimator's error through the coupler, mN (a fingertip notices ${limit} mN)`, height: 170, least: 1, hidden: kind === "board", mark: limit, series: [
       ...others.map((e) => line(e.name, e.colour, error("estimate:" + e.name), { dash: e.dash })),
       line("in charge", "--s0", error("velocity_large"), { width: 1.6 }),
     ] },
-    { id: "force", title: "Force at the fingertip, mN", height: 170, least: 1, mark: limit, series: [
-      line("felt", "--s1", at("force"), { width: 1.6 }), line("parasitic", "--s0", at("parasitic")),
-      line("50–500 Hz RMS", "--s3", at("tactile")),
+    { id: "force", title: "Force at the fingertip, mN", height: 170, least: 1, hidden: kind === "board", mark: limit, series: [
+      line(has ? "felt" : "of the torque wanted", "--s1", at("force"), { width: 1.6 }),
+      ...known(has, line("parasitic", "--s0", at("parasitic")), line("50–500 Hz RMS", "--s3", at("tactile"))),
     ] },
     { id: "torque", title: "Torque on the handle, mN·m", height: 150, least: 0.1, series: [
-      line("wanted", "--ink", times("torque", 1e3)), line("felt", "--s1", times("felt", 1e3)),
+      line("wanted", "--ink", times("torque", 1e3)), ...known(has, line("felt", "--s1", times("felt", 1e3))),
     ] },
     { id: "current", title: "Currents, A", height: 150, least: 0.01, series: [
-      line("large commanded", "--s4", at("current")), line("large", "--s0", at("current_large_true")),
-      line("small commanded", "--s2", at("current_small")), line("small", "--s1", at("current_small_true")),
+      line("large commanded", "--s4", at("current")), ...known(has, line("large", "--s0", at("current_large_true"))),
+      line("small commanded", "--s2", at("current_small")), ...known(has, line("small", "--s1", at("current_small_true"))),
     ] },
     { id: "cost", title: has ? "Instructions per control tick, most of a frame" : "Cycles of the longest control tick", height: 120, least: 10, series: [
       line(has ? "instructions" : "cycles", "--s3", at(has ? "instructions" : "cycles")),
     ] },
   ];
-  return list.filter((plot) => !(plot.needsTruth && facts.source.kind === "board"));
+  return list.filter((plot) => !plot.hidden);
 }
 
 function chosenColour(place) { return `--s${1 + (place % (COLOURS - 1))}`; }

@@ -189,3 +189,39 @@ fn board_that_falls_silent_is_told_and_gets_no_command_but_disarm() {
     // The disarm is not confirmed.
     assert!(!server.interrupt());
 }
+
+/// What a board does not report has no empty plot and no empty line.
+#[test]
+fn page_of_a_board_shows_what_the_board_reports_and_says_what_it_does_not() {
+    let shared = Arc::new(Shared::default());
+    let of_board = Arc::clone(&shared);
+    let port = port(move |stream| play(stream, &of_board));
+    let server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    browser.wait(&tab, "scope.frames > 2");
+    let shown = browser.value(
+        &tab,
+        "scope.plots.plots.map(({ plot, spec }) => [spec.id, ...plot.series.slice(1).map((s) => s.label)])",
+    );
+    let expected = json!([
+        ["velocity", "finite-difference", "in charge"],
+        ["torque", "wanted"],
+        ["current", "large commanded", "small commanded"],
+        ["cost", "cycles"]
+    ]);
+    assert_eq!(shown, expected);
+    let said = browser.value(&tab, "$('felt-words').textContent");
+    assert_eq!(
+        said,
+        "A board does not report the force at the fingertip. The torque that its scene wants has a plot."
+    );
+    let hidden = "$('force').getClientRects().length + $('meter').getClientRects().length";
+    assert_eq!(browser.value(&tab, hidden), 0);
+    // No label of the legend is hidden as that of the interval.
+    let labels = "$('plot-velocity').querySelectorAll('.u-series').length - [...$('plot-velocity').querySelectorAll('.u-series')].filter((e) => e.getClientRects().length).length";
+    assert_eq!(browser.value(&tab, labels), 0);
+    assert_eq!(browser.complaints, [""; 0]);
+}
