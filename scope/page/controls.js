@@ -179,6 +179,15 @@ class Controls {
     for (const id of ["record", ...[...document.querySelectorAll("#faults button")]]) (typeof id === "string" ? $(id) : id).disabled = locked;
   }
 
+  // The server, or its connection to the board, is gone: nothing on the page is of now.
+  lost() {
+    $("mode").className = "pill safe";
+    $("mode").textContent = "no connection";
+    $("pace").hidden = true;
+    this.role({ commands: false, known: true, why: "nothing comes from the board" });
+    $("take").hidden = true;
+  }
+
   // The board sends nothing: the text says so, or is null.
   silence(text) {
     if (!text && !this.silent) return;

@@ -5,12 +5,14 @@ window.scope = scope;
 addEventListener("error", (e) => scope.errors.push(String(e.message)));
 
 const link = connect({
-  opened() { $("notice").hidden = true; },
+  opened() { $("notice").hidden = true; scope.ended = null; setText("mode", ""); $("mode").className = "pill"; },
   closed() {
-    $("notice").hidden = false;
-    $("notice").textContent = "No connection to the server; the device goes safe by itself. Connecting again …";
-    if (scope.controls) scope.controls.role({ commands: false, known: true, why: "the server does not answer" });
+    const ended = scope.ended && `${scope.ended}. The server has ended; when it is started again, this page connects to it at the same --port.`;
+    notice(ended ?? "No connection to the server; the device goes safe by itself. Connecting again …");
+    scope.controls?.lost();
   },
+  // The source has failed, and the server ends.
+  ended({ why }) { scope.ended = why; notice(`${why}.`); scope.controls?.lost(); },
   rows(buffer) { scope.store?.take(buffer); },
   facts(facts) {
     if (scope.store) { scope.store.clear(); scope.store.next = null; scope.store.epoch = null; return; }
@@ -36,6 +38,8 @@ const link = connect({
   refused({ why }) { $("summary").textContent = `Refused: ${why}.`; },
 });
 scope.link = link;
+
+function notice(text) { $("notice").hidden = false; setText("notice", text); }
 
 const PLOT_MS = 30;
 let plotted = 0;

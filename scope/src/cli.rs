@@ -124,6 +124,9 @@ fn serve(
     let named = thread::Builder::new().name("source".to_owned());
     let source = named.spawn(move || {
         let ended = source.run(Arc::clone(&of_source), orders);
+        if let Err(failure) = &ended {
+            of_source.ended(failure);
+        }
         // A source that has failed ends the server.
         of_source.stop.store(true, Ordering::Relaxed);
         ended

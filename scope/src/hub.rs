@@ -133,6 +133,12 @@ impl Hub {
         self.tell(Event::Text(status.to_string().into()));
     }
 
+    /// The source has failed, and the server ends: tells every page why.
+    pub(crate) fn ended(&self, failure: &Failure) {
+        let ended = json!({ "type": "ended", "why": failure.to_string() });
+        self.tell(Event::Text(ended.to_string().into()));
+    }
+
     /// The events from now on.
     pub(crate) fn listen(&self) -> broadcast::Receiver<Event> {
         self.events.subscribe()

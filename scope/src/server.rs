@@ -94,6 +94,8 @@ async fn ended(hub: &Hub) {
     while !hub.stops() {
         tokio::time::sleep(LOOK).await;
     }
+    // The last events leave.
+    tokio::time::sleep(LOOK).await;
 }
 
 /// Refuses requests for another host, as after DNS rebinding, and from another origin.

@@ -64,6 +64,8 @@ fn port_without_an_answer_is_told_before_a_page_is_served() {
 #[derive(Default)]
 struct Shared {
     is_frozen: AtomicBool,
+    /// Whether the board closes its end.
+    hangs_up: AtomicBool,
     /// Whether the order to disarm ends the scene.
     obeys: bool,
     commands: Mutex<Vec<Command>>,
@@ -98,6 +100,9 @@ fn play(mut stream: TcpStream, shared: &Shared) {
             }
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             Err(_) => return,
+        }
+        if shared.hangs_up.load(Ordering::Relaxed) {
+            return;
         }
         if shared.is_frozen.load(Ordering::Relaxed) {
             continue;
@@ -188,6 +193,32 @@ fn board_that_falls_silent_is_told_and_gets_no_command_but_disarm() {
     shared.is_frozen.store(true, Ordering::Relaxed);
     // The disarm is not confirmed.
     assert!(!server.interrupt());
+}
+
+/// The server ends then: the page must not show the last state as that of now.
+#[test]
+fn page_of_a_lost_board_says_so() {
+    let shared = Arc::new(Shared::default());
+    let of_board = Arc::clone(&shared);
+    let port = port(move |stream| play(stream, &of_board));
+    let server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    browser.wait(
+        &tab,
+        "$('mode').textContent === 'running' && scope.link.isOpen",
+    );
+    shared.hangs_up.store(true, Ordering::Relaxed);
+    let said = format!("{port}: connection lost: ");
+    browser.wait(
+        &tab,
+        &format!(
+            "$('mode').textContent === 'no connection' && $('mode').classList.contains('safe') && $('pace').hidden \
+             && $('notice').textContent.startsWith('{said}') && $('commands').disabled && !scope.link.isOpen"
+        ),
+    );
 }
 
 /// What a board does not report has no empty plot and no empty line.

@@ -123,6 +123,10 @@ impl Source for RealBoard {
         desk.message(Message::Hello(self.hello), None);
         let followed = self.follow(&mut desk, &orders);
         desk.close();
+        // Before the disarm, which may wait for its answer.
+        if let Err(failure) = &followed {
+            hub.ended(failure);
+        }
         // A lost connection cannot be told again.
         let disarmed = disarm(self.port, self.patience);
         followed.and(disarmed)
