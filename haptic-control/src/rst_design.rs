@@ -125,7 +125,15 @@ impl RstDesign {
         let a = multiply([1.0, -pm, 0.0], [1.0, -pa, 0.0]);
         let a = [a[0], a[1], a[2]];
         // Response to a unit step after one tick, and the rest up to the final value.
-        let b1 = gain * (1.0 - (mechanical * pm - electrical * pa) / (mechanical - electrical));
+        let difference = mechanical - electrical;
+        let response = if difference > 1e-4 * mechanical || difference < -1e-4 * mechanical {
+            1.0 - (mechanical * pm - electrical * pa) / difference
+        } else {
+            // Around equal time constants the quotient loses its digits, up to 0/0: with pm = pa e^x, a series of e^x.
+            let x = t * difference / (mechanical * electrical);
+            1.0 - pa - pa * t / electrical * (1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0)))
+        };
+        let b1 = gain * response;
         let b2 = gain * (1.0 - pm) * (1.0 - pa) - b1;
         if !(b1 > 0.0 && b2 > 0.0) {
             return Err(DesignError::Device);

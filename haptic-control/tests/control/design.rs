@@ -226,6 +226,48 @@ fn devices_within_a_factor_of_ten_have_a_loop_and_every_scene() {
     }
 }
 
+/// The motor on its coupler is as slow as the amplifier: the quotient of their closed form is 0/0. The limit is that of
+/// two equal lags, and the response is continuous around it.
+#[test]
+fn motor_as_fast_as_its_amplifier_has_the_response_of_two_equal_lags() {
+    let rate = Hertz(10e3);
+    let at = |relative: f64| {
+        let mut device = DualStage::DEFAULT;
+        device.large.inertia = device.amplifier_lag() * device.damping * (1.0 + relative);
+        device
+    };
+    let equal = at(0.0);
+    assert_eq!(
+        equal.large.inertia / equal.damping,
+        equal.amplifier_lag(),
+        "to the last bit"
+    );
+    let x = rate.period_s() / equal.amplifier_lag();
+    let limit = 1.0 - (-x).exp() * (1.0 + x);
+    let gain = equal.large.torque_constant / equal.damping;
+    for relative in [
+        0.0, 1e-12, -1e-12, 1e-6, 0.99e-4, -0.99e-4, 1.01e-4, -1.01e-4,
+    ] {
+        let design = RstDesign::new(&at(relative), rate, LoopPoles::DEFAULT);
+        let design = design.unwrap_or_else(|error| panic!("{relative}: {error}"));
+        let response = design.b[1] / gain;
+        // The response falls by less than its relative change of one of both time constants; the closed form keeps
+        // eleven digits at 1e-4.
+        let change = (response - limit).abs();
+        assert!(
+            change <= relative.abs() * limit + 1e-11,
+            "{relative}: {change}"
+        );
+        assert!(Rig::new(&at(relative), rate, LoopPoles::DEFAULT).is_ok());
+    }
+    // Both sides of the limit of the series, one ten-millionth apart.
+    let [series, closed] = [0.999_999e-4, 1.000_001e-4].map(|relative| {
+        let design = RstDesign::new(&at(relative), rate, LoopPoles::DEFAULT);
+        design.unwrap().b[1] / gain
+    });
+    assert!((series - closed).abs() < 1e-9, "{series} {closed}");
+}
+
 #[test]
 fn impossible_designs_are_refused() {
     let late = LoopPoles {
