@@ -14,7 +14,7 @@ use terminal::output::{note, print_to_reader};
 use crate::clock::Limit;
 use crate::named::explained;
 use crate::port::Port;
-use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refused, silent};
+use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refusal, silent};
 use crate::sent::ATTEMPTS;
 use crate::watch::is_enabled;
 
@@ -224,7 +224,7 @@ impl Board {
             let Some((earlier, now)) = before.zip(after) else {
                 return Ok(());
             };
-            if let Some(reason) = refused(&earlier, &now) {
+            if let Some(reason) = refusal(&earlier, &now) {
                 return Err(Failure::Check(format!(
                     "{what}: the board refuses it: {}",
                     explained(reason, scene)

@@ -9,8 +9,7 @@ pub(crate) const OUT_OF_BOUNDS: &str = "the value is out of bounds";
 pub(crate) const UNVERIFIED: &str =
     "the signs of encoders and currents have not been verified; run cargo drive bring-up";
 /// What to do about bytes that reach the board and are no command.
-pub(crate) const NOISE: &str =
-    "check the line of the board, and end what writes to its debug probe";
+pub const NOISE: &str = "check the line of the board, and end what writes to its debug probe";
 
 /// Checks that the board at the port of this name speaks the protocol of this build.
 ///
@@ -39,16 +38,9 @@ pub fn silent(port: &str, parser: &Parser) -> String {
     format!("{port}: the board {heard}; check the port, the power and that the image has the link")
 }
 
-/// The reason of a refusal between two counts. Bytes that are no command may have been one.
+/// The reason why the board has refused a command between two counts. Bytes that are no command are no refusal.
 #[must_use]
 pub fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str> {
-    let damaged =
-        is_damaged(before, now).then_some("bytes that are no command came; it may be lost");
-    refused(before, now).or(damaged)
-}
-
-/// The reason why the board has refused a command that it understood, between two counts.
-pub(crate) fn refused(before: &Rejected, now: &Rejected) -> Option<&'static str> {
     [
         (before.not_finite, now.not_finite, "the value is not finite"),
         (before.out_of_bounds, now.out_of_bounds, OUT_OF_BOUNDS),
@@ -61,7 +53,8 @@ pub(crate) fn refused(before: &Rejected, now: &Rejected) -> Option<&'static str>
 
 /// Whether bytes that are no command reached the board between two counts: on its line, or over its debug probe.
 /// A command between them may be one of these.
-pub(crate) const fn is_damaged(before: &Rejected, now: &Rejected) -> bool {
+#[must_use]
+pub const fn is_damaged(before: &Rejected, now: &Rejected) -> bool {
     has_grown(before.garbage, now.garbage)
 }
 
@@ -81,7 +74,8 @@ pub(crate) fn has_started_again(before: &Rejected, now: &Rejected) -> bool {
 }
 
 /// Whether a count, which wraps, has grown. A board that starts again counts from 0.
-const fn has_grown(before: u32, now: u32) -> bool {
+#[must_use]
+pub const fn has_grown(before: u32, now: u32) -> bool {
     now.wrapping_sub(before).cast_signed() > 0
 }
 
@@ -128,13 +122,13 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_command_are_no_refusal_of_one_that_was_understood() {
+    fn bytes_that_are_no_command_are_no_refusal() {
         let before = Rejected::default();
         let now = Rejected {
             garbage: 1,
             ..before
         };
-        assert_eq!(refused(&before, &now), None);
-        assert!(is_damaged(&before, &now) && refusal(&before, &now).is_some());
+        assert_eq!(refusal(&before, &now), None);
+        assert!(is_damaged(&before, &now) && !is_damaged(&now, &before));
     }
 }

@@ -8,7 +8,7 @@ use haptic_control::SceneKind;
 use terminal::failure::Failure;
 
 use crate::named::explained;
-use crate::refusal::{is_damaged, refused};
+use crate::refusal::{is_damaged, refusal};
 
 /// Largest number of times that a command is sent while bytes that are no command reach the board.
 pub(crate) const ATTEMPTS: u32 = 4;
@@ -73,7 +73,7 @@ impl Sent {
     }
 
     fn refusal(&self, now: &Rejected, order: Option<&Order>) -> Result<(), Failure> {
-        let Some(reason) = self.before.and_then(|before| refused(&before, now)) else {
+        let Some(reason) = self.before.and_then(|before| refusal(&before, now)) else {
             return Ok(());
         };
         let reason = explained(reason, self.scene);

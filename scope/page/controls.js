@@ -227,7 +227,7 @@ class Controls {
     if (s.scene !== this.scene && s.scene !== undefined) this.showScene(s.scene);
     for (const follow of this.sliders) follow();
     this.wall();
-    const refused = s.refusal ? `The board refused a command: ${s.refusal.reason}.` : "";
+    const refused = s.refusal ? sentence(s.refusal.words) : "";
     if (refused) $("summary").textContent = refused;
     $("record").textContent = s.recording === null ? "Record" : "Stop";
     $("recorded").textContent = s.recording === null ? "" : `${(s.recording / 1000).toFixed(1)} s`;

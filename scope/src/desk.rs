@@ -3,9 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use drive::refusal::refusal;
 use drivers::Command;
-use drivers::link::{Frame, Hello, Message, Rejected};
+use drivers::link::{Frame, Hello, Message};
 use haptic_control::{Mode, Request, Stop};
 use serde_json::{Value, json};
 use simulation::device::Device;
@@ -19,6 +18,7 @@ use crate::hub::{Event, Hub};
 use crate::order::Order;
 use crate::parameters::Tuned;
 use crate::recorder::Recorder;
+use crate::refusals::Refusals;
 use crate::selection::Selection;
 use crate::values::{Conversion, Truth};
 
@@ -40,9 +40,7 @@ pub(crate) struct Desk {
     last: Option<Frame>,
     /// Time of the last row, s.
     t: f64,
-    rejected: Option<Rejected>,
-    /// Why the board refused the latest command that it refused, and how many it refused.
-    refusal: Option<(&'static str, u32)>,
+    refusals: Refusals,
     selection: Selection,
     tuned: Tuned,
     told: Instant,
@@ -65,8 +63,7 @@ impl Desk {
             hello: None,
             last: None,
             t: 0.0,
-            rejected: None,
-            refusal: None,
+            refusals: Refusals::default(),
             selection: Selection::NONE,
             tuned: Tuned::new(),
             told: Instant::now(),
@@ -93,7 +90,8 @@ impl Desk {
 
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
-        (self.last, self.rejected, self.hello) = (None, None, None);
+        (self.last, self.hello) = (None, None);
+        self.refusals.restarted();
         self.hub.identify(None);
         self.forget();
         self.estimators.restart();
@@ -110,7 +108,7 @@ impl Desk {
     pub(crate) fn disarm(&mut self, why: &str) -> Command {
         self.bench.abandon(why);
         self.selection = Selection::NONE;
-        self.refusal = None;
+        self.refusals.forget();
         Command::Request(Request::Disarm)
     }
 
@@ -161,7 +159,7 @@ impl Desk {
         }
         let command = order.command()?;
         if command != Command::Request(Request::KeepAlive) {
-            self.refusal = None;
+            self.refusals.forget();
         }
         Some(command)
     }
@@ -204,15 +202,10 @@ impl Desk {
             }
             Message::Frame(frame) => self.frame(&frame, truth),
             Message::Rejected(now) => {
-                let before = self.rejected.unwrap_or(now);
-                if before.unverified != now.unverified {
+                let is_scene_refused = self.refusals.take(&now);
+                if is_scene_refused {
                     self.selection.refused(self.t);
                 }
-                if let Some(reason) = refusal(&before, &now) {
-                    let number = self.refusal.map_or(0, |(_, number)| number) + 1;
-                    self.refusal = Some((reason, number));
-                }
-                self.rejected = Some(now);
             }
             _ => {}
         }
@@ -277,7 +270,7 @@ impl Desk {
             "words": cause.filter(|cause| *cause != Stop::None).map(|cause| sentence(cause.meaning())),
             "scene": self.selection.scene(),
             "tuned": self.tuned.json(),
-            "refusal": self.refusal.map(|(reason, number)| json!({"reason": reason, "number": number})),
+            "refusal": self.refusals.json(),
             "recording": recording.map(Recorder::len),
             "recorded": self.hub.recording().is_some(),
             "fault": self.fault.as_ref().map(FaultWatch::json),

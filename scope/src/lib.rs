@@ -13,6 +13,7 @@ mod order;
 mod page;
 mod parameters;
 mod recorder;
+mod refusals;
 mod selection;
 mod server;
 mod session;

@@ -14,10 +14,6 @@ impl Outcome {
         for (_, byte) in &self.port {
             parser.take(*byte, |message| {
                 if let Message::Rejected(counts) = message {
-                    let counts = Rejected {
-                        garbage: 0,
-                        ..counts
-                    };
                     told = told.or_else(|| refusal(&Rejected::default(), &counts));
                 }
             });
