@@ -204,6 +204,24 @@ fn first_command_arms_a_board_with_current_monitors() {
     }
 }
 
+/// Random bytes at the debug probe are counted as those of the port are. They end no session, and its changes, which
+/// may have been damaged, are sent again.
+#[test]
+fn flood_at_the_debug_probe_ends_no_session() {
+    let (address, board) = EmulatedBoard::start(Setup {
+        hand: SimulatedHand::HoldStill.into(),
+        faults: vec![(0.001, Fault::CommandFlood)],
+        ..Setup::default()
+    });
+    let tune = ["select", "wall", "--tune", "stiffness=0.1@0.1"];
+    let output = tool(address, &[&tune[..], &["--seconds", "2"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = String::from_utf8(output.stderr).unwrap();
+    let said = "wall stiffness 0.1 N\u{b7}m/rad: sent 4 times, and each time bytes that are no command reached";
+    assert!(text.contains(said), "{text}");
+    board.end();
+}
+
 /// The value of a setting in the table of the tool.
 fn setting(address: SocketAddr, name: &str) -> f64 {
     let (text, _) = said(address, &["settings"]);
