@@ -57,9 +57,7 @@ impl Run {
         Ok(Recording {
             t: (0..trace.len()).map(|k| k as f64 / self.rate_hz).collect(),
             trace,
-            current_small: None,
-            uneven_steps: 0,
-            notes: Vec::new(),
+            ..Recording::default()
         })
     }
 

@@ -2,6 +2,7 @@
 
 mod absolute;
 mod board;
+mod bursts;
 mod capture;
 mod clock;
 mod columns;
@@ -80,6 +81,8 @@ pub struct Recording {
     pub current_small: Option<Vec<f64>>,
     /// Number of steps of `t` that differ from the period by more than a tenth of it.
     pub uneven_steps: usize,
+    /// Number of rows that are left out because they have the time of the row before.
+    pub repeated_rows: usize,
     /// Notes of the reader, one line each: what it converted, and the rows that are missing.
     pub notes: Vec<String>,
 }

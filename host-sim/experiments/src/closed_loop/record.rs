@@ -18,9 +18,7 @@ impl Loop {
                 rate_hz: self.rate_hz / every as f64,
                 ..Trace::default()
             },
-            current_small: None,
-            uneven_steps: 0,
-            notes: Vec::new(),
+            ..Recording::default()
         };
         let column = || Vec::with_capacity(rows);
         let (mut small, mut large_a, mut small_a, mut omega) =

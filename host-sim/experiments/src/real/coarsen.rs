@@ -130,9 +130,7 @@ impl Coarse {
         Ok(Recording {
             t,
             trace,
-            current_small: None,
-            uneven_steps: 0,
-            notes: Vec::new(),
+            ..Recording::default()
         })
     }
 }

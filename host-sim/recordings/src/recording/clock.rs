@@ -151,9 +151,12 @@ impl Recording {
     ///
     /// # Errors
     /// [`Failure::Input`] with the remedy if more than a tenth of the steps of `t` differ from the
-    /// period by more than half of it, and `t` has so few digits that late rows look as missing ones.
+    /// period by more than half of it, and `t` has so few digits that late rows look as missing ones; or if
+    /// the rows come in bursts.
     pub fn check_times(&self, name: &str) -> Result<(), Failure> {
-        Steps::of(&self.t).check_times(self.trace.rate_hz, name)
+        let steps = Steps::of(&self.t);
+        steps.check_bursts(self.repeated_rows, name)?;
+        steps.check_times(self.trace.rate_hz, name)
     }
 
     /// Share of uneven steps of `t`, 0 to 1.

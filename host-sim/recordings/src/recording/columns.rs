@@ -31,7 +31,7 @@ pub(super) struct Columns<'a> {
     /// The log's own times, which --row-rate replaces.
     replaced_place: Option<Place>,
     replaced: Replaced,
-    repeated: Repeated,
+    pub(super) repeated: Repeated,
     own_times: OwnTimes,
     /// Marks in the numbers of the two positions.
     thousands: [Thousands; 2],
@@ -283,6 +283,7 @@ impl<'a> Columns<'a> {
         let periods = clock::periods(&self.t, rate_hz);
         let mut recording = Recording {
             uneven_steps,
+            repeated_rows: self.repeated.rows(),
             notes,
             ..self.drain(self.t.len(), rate_hz)
         };
@@ -304,6 +305,7 @@ impl<'a> Columns<'a> {
         Recording {
             t: front(&mut self.t, rows),
             uneven_steps: 0,
+            repeated_rows: 0,
             current_small: any(&[Column::CurrentSmall, Column::CurrentSmallMeasured])
                 .then_some(current_small),
             trace: Trace {
@@ -332,15 +334,11 @@ impl<'a> Columns<'a> {
         layout: &Layout,
     ) -> Result<Vec<String>, Failure> {
         for (column, thousands) in MARKED.iter().zip(&self.thousands) {
-            if let Some(line) = thousands.found() {
-                return Err(Failure::Input(format!(
-                    "{name}: line {line}: column {}: the mark in this and the other numbers from 1000 on, and in none \
-                     below, separates thousands; write the numbers without it",
-                    column.name()
-                )));
-            }
+            thousands.check(name, column.name())?;
         }
-        let repeated = self.repeated.check(name, self.taken)?;
+        let repeated = self
+            .repeated
+            .check(name, self.taken, self.last_t - self.first_t)?;
         if let Some(at) = self.place(Column::EdgeTick) {
             self.stamps.check(name, &layout.names[at.place])?;
         }

@@ -26,6 +26,7 @@ impl Recording {
             t: self.t.drain(..rows).collect(),
             current_small: front(&mut self.current_small, rows),
             uneven_steps: 0,
+            repeated_rows: 0,
             notes: Vec::new(),
             trace: Trace {
                 rate_hz: trace.rate_hz,

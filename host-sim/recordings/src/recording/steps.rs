@@ -24,6 +24,9 @@ const SAME: f64 = 1e-3;
 const NEXT: f64 = 1.5;
 const FEW: f64 = 20.0;
 
+/// Least ratio of a step to the one before for a pause behind rows that come together.
+const RISE: f64 = 3.0;
+
 /// Slowest rate of a recording, Hz.
 pub const SLOWEST_HZ: f64 = 10.0;
 
@@ -35,6 +38,9 @@ pub const SLOWEST_HZ: f64 = 10.0;
 pub(super) struct Steps {
     classes: BTreeMap<u64, Class>,
     number: u64,
+    /// The last step, s, and the number of steps of several times the one before.
+    last: f64,
+    pub(super) rises: u64,
 }
 
 /// Steps of nearly one length.
@@ -76,6 +82,8 @@ impl Steps {
             }
         }
         self.number += 1;
+        self.rises += u64::from(length > RISE * self.last);
+        self.last = length;
     }
 
     fn classes(&self) -> impl Iterator<Item = &Class> {

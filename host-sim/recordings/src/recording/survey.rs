@@ -32,6 +32,8 @@ pub struct Survey {
     pub(super) period: f64,
     pub(super) rate_hz: f64,
     pub(super) first_t: f64,
+    /// Rows that are left out because they have the time of the row before.
+    repeated_rows: usize,
     steps: Steps,
     /// Modulus at which the counts of each encoder are unwrapped.
     pub(super) wraps: [Option<u32>; 2],
@@ -118,6 +120,7 @@ impl Survey {
         let mut notes = columns.checked(name, &places, &records.layout)?;
         let option = || hint::current(&places, &records.layout);
         notes.extend(implausible_current(current, options.current_limit, option));
+        let repeated_rows = columns.repeated.rows();
         let (period, rate_hz) = steps.period(name)?;
         notes.extend(clock::fast(rate_hz));
         let mut wraps = [None; 2];
@@ -145,6 +148,7 @@ impl Survey {
             period,
             rate_hz,
             first_t,
+            repeated_rows,
             steps,
             wraps,
         })
@@ -167,7 +171,10 @@ impl Survey {
     pub fn check_times(&self, name: &str) -> Result<(), Failure> {
         match self.resample {
             Some(_) => Ok(()),
-            None => self.steps.check_times(self.rate_hz, name),
+            None => {
+                self.steps.check_bursts(self.repeated_rows, name)?;
+                self.steps.check_times(self.rate_hz, name)
+            }
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Numbers with separators of thousands that look like decimal numbers.
 
+use terminal::failure::Failure;
+
 /// What the numbers of a column look like: `900` below `1,000` has a separator of thousands, and read as decimal
 /// numbers these are 900 and 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,8 +45,22 @@ impl Thousands {
         }
     }
 
+    /// Checks that the numbers of `column` in the log called `name` have no separators of thousands.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the line of the first one if all numbers look so.
+    pub(super) fn check(&self, name: &str, column: &str) -> Result<(), Failure> {
+        match self.found() {
+            None => Ok(()),
+            Some(line) => Err(Failure::Input(format!(
+                "{name}: line {line}: column {column}: the mark in this and the other numbers from 1000 on, and in \
+                 none below, separates thousands; write the numbers without it"
+            ))),
+        }
+    }
+
     /// The line of a number with a separator of thousands, if all numbers look so.
-    pub(super) fn found(&self) -> Option<u64> {
+    fn found(&self) -> Option<u64> {
         self.grouped
             .filter(|_| self.is_plain_below && self.is_small && !self.is_decimal)
     }

@@ -4,7 +4,7 @@ use terminal::failure::Failure;
 
 use super::numbers::shown;
 use super::row::Row;
-use super::steps::to_digits;
+use super::steps::{SLOWEST_HZ, to_digits};
 
 /// Largest difference of the mean rate of the rows from that of --row-rate, relative.
 const SAME_RATE: f64 = 0.05;
@@ -14,6 +14,20 @@ const LONGEST_RUN_S: f64 = 1e8;
 
 /// Part of a distance from which the time at a wrap or at a new run may differ.
 pub(super) const NEAR: f64 = 0.01;
+
+/// Largest difference of a mean rate from a number of two digits that is taken for it, relative.
+const ROUND: f64 = 2e-3;
+
+/// Mean rate of `steps` equal steps over `duration_s`, for an option, Hz; `None` if it is none of a recording.
+pub(super) fn mean_rate(steps: u64, duration_s: f64) -> Option<f64> {
+    let hz = steps as f64 / duration_s;
+    let round = to_digits(hz, 2);
+    let hz = match (hz / round - 1.0).abs() < ROUND {
+        true => round,
+        false => to_digits(hz, 4),
+    };
+    (hz.is_finite() && hz >= SLOWEST_HZ).then_some(hz)
+}
 
 /// Error for a row at `t` below one at `last`, s. `first` is the first time of the log.
 pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
@@ -48,21 +62,33 @@ impl Repeated {
         self.rows += 1;
     }
 
-    /// Note on the rows of the recording `name` that are left out beside `taken` ones; `None` if there
-    /// are none.
+    /// Number of the rows.
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Note on the rows of the recording `name` that are left out beside `taken` ones, which span `duration_s`, s;
+    /// `None` if there are none.
     ///
     /// # Errors
-    /// [`Failure::Input`] if they are more than a tenth of the rows.
-    pub(super) fn check(&self, name: &str, taken: usize) -> Result<Option<String>, Failure> {
+    /// [`Failure::Input`] with the mean rate of all rows if they are more than a tenth of them.
+    pub(super) fn check(
+        &self,
+        name: &str,
+        taken: usize,
+        duration_s: f64,
+    ) -> Result<Option<String>, Failure> {
         let Some((line, t)) = self.first else {
             return Ok(None);
         };
         let (rows, t) = (self.rows, shown(t));
         let share = rows as f64 / (rows + taken) as f64;
         if share > REPEATED_SHARE {
+            let mean_hz = mean_rate((rows + taken) as u64 - 1, duration_s);
+            let hz = mean_hz.map_or("HZ".to_owned(), |hz| hz.to_string());
             return Err(Failure::Input(format!(
                 "{name}: column t: {:.0} % of the rows have the time of the row before, the first in line \
-                 {line} at {t} s; log t with more digits, or give the rate of the rows with --row-rate HZ",
+                 {line} at {t} s; log t with more digits, or give the rate of the rows with --row-rate {hz}",
                 100.0 * share
             )));
         }
@@ -192,7 +218,7 @@ mod tests {
     fn log_with_few_digits_of_time_is_refused() {
         let error = read(&repeated(2, 10), "", None).unwrap_err();
         let said = "r.csv: column t: 45 % of the rows have the time of the row before, the first in line \
-                    12 at 20.009 s; log t with more digits, or give the rate of the rows with --row-rate HZ";
+                    12 at 20.009 s; log t with more digits, or give the rate of the rows with --row-rate 1000";
         assert_eq!(error, said);
     }
 
