@@ -222,6 +222,20 @@ impl Format {
         self.mark.is_empty() || header.iter().any(|name| name == self.mark)
     }
 
+    /// The unit of the position at `place` of `header` where its name is one of a known log, which may lack other
+    /// columns. A name that other programs write tells no more than the column beside it that distinguishes a log.
+    pub(super) fn position_unit(header: &[String], place: usize) -> Option<&'static str> {
+        FORMATS.iter().find_map(|format| {
+            let is_marked = !format.mark.is_empty() && format.is_marked(header);
+            let mut positions = format.columns.iter().filter(|foreign| {
+                foreign.column == Column::CountsLarge
+                    && (is_marked || matches!(foreign.called, End(_)))
+            });
+            let position = positions.find(|foreign| foreign.places(header).contains(&place));
+            position.map(|foreign| foreign.unit)
+        })
+    }
+
     /// The columns of this log in `header`.
     pub(super) fn find(&self, header: &[String]) -> Vec<Found> {
         let mut found: Vec<Found> = Vec::new();

@@ -1,9 +1,11 @@
 //! Options that would read a log without a needed column.
 
 use super::endings::Ending;
-use super::formats::Ambiguous;
+use super::formats::{Ambiguous, Format};
 use super::header::short;
-use super::layout::{Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
+use super::layout::{
+    Keyed, Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect,
+};
 use super::options::Column;
 use super::steps::to_digits;
 use super::units::Quantity;
@@ -57,17 +59,22 @@ pub(super) fn option(layout: &Layout) -> String {
             ),
         };
     }
+    format!(
+        "name the columns and units, for example --column '{}'{}",
+        parts(layout),
+        only_indirect(layout).unwrap_or_default()
+    )
+}
+
+/// The parts of `--column` for the time and the position.
+fn parts(layout: &Layout) -> String {
     let time = || guess(layout, Column::T, &times(), "TIME");
     let parts = [
         (!layout.has_rate).then(time).flatten(),
         guess(layout, Column::CountsLarge, &positions(), "POSITION"),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
-    format!(
-        "name the columns and units, for example --column '{}'{}",
-        parts.join(","),
-        only_indirect(layout).unwrap_or_default()
-    )
+    parts.join(",")
 }
 
 /// The name of a position that is not measured at the shaft, where there is no other one.
@@ -137,9 +144,11 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
         return Some(format!("{ours}={unknown}:{}", example(quantity)));
     };
     let name = &layout.names[place];
+    let known = known_unit(layout, quantity, place);
     let unit = match layout.ending(quantity, place) {
         // Of a name with another unit only its owner can say what the numbers are.
         Ending::Unit(_) | Ending::Unknown(_) => String::new(),
+        Ending::Nothing if known.is_some() => format!(":{}", known.unwrap_or_default()),
         Ending::Nothing if quantity == Quantity::Position && layout.fractional.contains(&place) => {
             format!(":{ANGLE}")
         }
@@ -150,6 +159,17 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
         }
     };
     (name != ours).then(|| format!("{ours}={}{unit}", theirs(layout, place)))
+}
+
+/// The unit of a position that has the name of one of a known log.
+fn known_unit(layout: &Layout, quantity: Quantity, place: usize) -> Option<&'static str> {
+    let own = |name: &String| {
+        let keys = layout.keyed.iter().flat_map(|keyed| &keyed.keys);
+        let mut own = keys.filter_map(|key| name.strip_prefix(key.as_str())?.strip_prefix('.'));
+        own.next().unwrap_or(name).to_owned()
+    };
+    let names: Vec<_> = layout.names.iter().map(own).collect();
+    Format::position_unit(&names, place).filter(|_| quantity == Quantity::Position)
 }
 
 /// What an option calls the column at `place`: its name, or its number where the name is too long or
@@ -166,11 +186,27 @@ pub(super) fn theirs(layout: &Layout, place: usize) -> String {
 /// A reason for a missing column that is better than its name.
 pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
     let ambiguous = ambiguous(layout, places);
-    ambiguous
+    keyed(layout)
+        .or(ambiguous)
         .or_else(|| captured(layout))
         .or_else(|| levels(layout))
         .or_else(|| barred(layout))
         .or_else(|| untimed(layout))
+}
+
+/// Rows of several motors.
+fn keyed(layout: &Layout) -> Option<String> {
+    let Keyed { columns, keys } = layout.keyed.as_ref()?;
+    let mut listed: Vec<_> = keys.iter().take(LISTED).map(|key| short(key)).collect();
+    if keys.len() > LISTED {
+        listed.push("...".to_owned());
+    }
+    Some(format!(
+        "each row is of one of several motors: '{}' is {}; name the columns of one motor, for example --column '{}'",
+        short(&columns.join(".")),
+        listed.join("; "),
+        parts(layout)
+    ))
 }
 
 /// Rows without a time whose rate is stated.
@@ -260,131 +296,4 @@ pub(super) const fn example(quantity: Quantity) -> &'static str {
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::recording::{read_log as read, read_log_at as read_at};
-
-    #[test]
-    fn columns_of_two_levels_are_named_where_no_position_is() {
-        let log = |header: &str, level: u32| {
-            let rows = (0..20).map(|k| format!("{k}e-3,{},{},1\n", k / 2 % 2, level * (k % 2)));
-            format!("{header}\n# a comment\n\n{}", rows.collect::<String>())
-        };
-        let said = "r.csv: line 1: the columns s1, s2 are 0 or 1 in the first rows; if they are the lines of \
-                    an encoder, make a recording of them with host-sim decode";
-        assert_eq!(read(&log("t,s1,s2,on", 1), "").unwrap_err(), said);
-        let error = read(&log("t,enc_a,enc_b,on", 1), "").unwrap_err();
-        assert!(
-            error.contains("the columns enc_a, enc_b are 0 or 1"),
-            "{error}"
-        );
-        for (header, level) in [("t,s1,s2,on", 2), ("t,s1,s2,pos", 1)] {
-            let error = read(&log(header, level), "").unwrap_err();
-            assert!(error.contains("no column counts_large; found: "), "{error}");
-        }
-        assert!(read(&log("t,s1,s2,on", 1), "counts_large=s1").is_ok());
-    }
-
-    #[test]
-    fn position_with_fractions_is_taken_for_an_angle() {
-        for (rows, unit) in [
-            ("0;7\n1;8", "counts"),
-            ("0;7,0\n1;8", "counts"),
-            ("0;7\n1;8,5", "rad"),
-            ("0,5;7\n1;8", "counts"),
-        ] {
-            let error = read(&format!("time;position\n{rows}\n"), "").unwrap_err();
-            let said = format!("for example --column 't=time:s,counts_large=position:{unit}'");
-            assert!(error.contains(&said), "{rows}: {error}");
-        }
-    }
-
-    #[test]
-    fn time_since_1970_is_proposed_with_its_unit() {
-        for (first, unit) in [
-            ("1700000000123456789", "ns"),
-            ("1700000000123456", "us"),
-            ("1700000000123", "ms"),
-            ("1700000000.5", "s"),
-            ("4200000000000", "s"),
-        ] {
-            // The column of the counts is none of time.
-            let error = read(&format!("time;position\n{first};1700000000123\n"), "").unwrap_err();
-            let said = format!("--column 't=time:{unit},counts_large=position:counts'");
-            assert!(error.contains(&said), "{first}: {error}");
-        }
-    }
-
-    #[test]
-    fn example_names_no_target_error_or_duration() {
-        for (names, said) in [
-            (
-                "time_s,ref_theta,theta",
-                "'t=time_s,counts_large=theta:counts'; read without",
-            ),
-            (
-                "time_s,error_count,angle_deg",
-                "'t=time_s,counts_large=angle_deg'; read without",
-            ),
-            (
-                "loop_time_us,time,counts",
-                "'t=time:s,counts_large=counts'; read without",
-            ),
-            (
-                "time_s,dpos_deg,pos_err",
-                "'t=time_s,counts_large=POSITION:counts': by its name 'dpos_deg' is a rate, a target, an error, a \
-                 difference or an electrical angle; read without",
-            ),
-        ] {
-            let error = read(&format!("{names}\n2,3,4\n3,4,5\n"), "").unwrap_err();
-            assert!(
-                error.contains(&format!("for example --column {said}")),
-                "{error}"
-            );
-        }
-    }
-
-    #[test]
-    fn example_has_no_time_where_the_rate_is_stated() {
-        for (text, said) in [
-            (
-                "x,y\n0,1\n1,2\n",
-                "for example --column 'counts_large=POSITION:counts'; read without",
-            ),
-            (
-                "0,1\n1,2\n",
-                "give the number of the column, for example --column counts_large=2:counts; read",
-            ),
-            (
-                "1\n2\n",
-                "give the number of the column, for example --column counts_large=1:counts; read",
-            ),
-        ] {
-            let error = read_at(Some(1000.0), text, "").unwrap_err();
-            assert!(error.contains(said), "{error}");
-        }
-        let error = read("1\n2\n", "").unwrap_err();
-        let said = "there are no names but 1 column; give the number of the column and the rate of the rows, for \
-                    example --column counts_large=1:counts --row-rate 1000";
-        assert!(error.contains(said), "{error}");
-    }
-
-    #[test]
-    fn log_without_a_time_is_told_of_the_rate_of_its_rows() {
-        let said = ", or give the rate of the rows with --row-rate HZ in the place of a time; ";
-        for (header, tells) in [
-            ("x,pos_deg", true),
-            ("pos_deg,v_rad", true),
-            ("T,pos_deg", false),
-            ("clock_ms,pos_deg", false),
-            ("Timer,pos_deg", false),
-            ("dt_ms,pos_deg", true),
-            ("a,pos_deg\n[ms],[deg]", false),
-            ("a,pos_deg\n[A],[deg]", true),
-        ] {
-            let error = read(&format!("{header}\n0,1\n1,2\n"), "").unwrap_err();
-            assert_eq!(error.contains(said), tells, "{header}: {error}");
-        }
-        let error = read("0,1\n1,2\n", "").unwrap_err();
-        assert!(!error.contains(said), "{error}");
-    }
-}
+mod tests;

@@ -17,7 +17,7 @@ use super::header;
 use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
 pub(super) use places::{Part, Place, Places};
-pub(super) use search::{UNKNOWN, is_number};
+pub(super) use search::{UNKNOWN, is_fraction, is_number};
 use search::{fractional, is_content, named, numbers, probable, since_1970, two_levels};
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
@@ -61,6 +61,16 @@ pub(super) struct Layout {
     pub(super) has_rate: bool,
     /// Line of the first row above a header that is in the middle of the text.
     pub(super) rows_above: Option<u64>,
+    /// The motors of a table with rows of one motor each.
+    pub(super) keyed: Option<Keyed>,
+}
+
+/// Motors that a table calls by their numbers, which are the begins of the names of their columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Keyed {
+    /// The columns with the numbers.
+    pub(super) columns: Vec<String>,
+    pub(super) keys: Vec<String>,
 }
 
 impl Layout {
@@ -147,6 +157,7 @@ impl Layout {
             row_rate_hz: None,
             has_rate: false,
             rows_above: None,
+            keyed: None,
         }
     }
 

@@ -1,12 +1,15 @@
 //! Tables with the numbers of one signal a row: time, name and value; or time, joint, position and velocity.
 
+mod numbered;
+
+use std::collections::BTreeSet;
 use std::io::BufRead;
 
 use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use super::layout::{Layout, SEARCHED, is_number, is_stamped};
+use super::layout::{Keyed, Layout, SEARCHED, is_fraction, is_number, is_stamped};
 use super::named_fields::{Field, Mark, Places, names};
 use super::options::{Column, ReadOptions};
 use super::separator::{Separator, comment};
@@ -45,6 +48,8 @@ struct Table {
     /// Columns of numbers, and their own names behind that of the key.
     values: Vec<(usize, String)>,
     columns: usize,
+    /// Whether the keys are numbers of motors.
+    is_numbered: bool,
 }
 
 impl Table {
@@ -62,23 +67,29 @@ impl Table {
                 .collect()
         };
         let time = places(&|name| name == "t" || name.contains("time") || name.contains("stamp"));
-        let keys = places(&|name| KEYS.contains(&name));
+        let mut keys = places(&|name| KEYS.contains(&name));
+        let is_numbered = !keys.iter().any(|key| !is_number(*key));
+        if is_numbered {
+            keys = places(&numbered::is_called_so);
+            let is_id = |key: &usize| row.get(*key).is_some_and(|field| numbered::is_id(field));
+            keys.retain(is_id);
+        }
         let value = places(&|name| name == VALUE);
         let values: Vec<_> = match value.as_slice() {
-            [value] => vec![(*value, String::new())],
+            [value] if !is_numbered => vec![(*value, String::new())],
             _ => (0..names.len())
                 .filter(|place| !time.contains(place) && !keys.contains(place) && is_number(*place))
                 .map(|place| (place, format!(".{}", names[place])))
                 .collect(),
         };
         let has_numbers = !values.is_empty() && values.iter().all(|(place, _)| is_number(*place));
-        let has_keys = keys.iter().any(|key| !is_number(*key));
         match time.as_slice() {
-            [time] if row.len() == names.len() && has_numbers && has_keys => Some(Self {
+            [time] if row.len() == names.len() && has_numbers && !keys.is_empty() => Some(Self {
                 time: *time,
                 keys,
                 values,
                 columns: names.len(),
+                is_numbered,
             }),
             _ => None,
         }
@@ -120,7 +131,8 @@ impl Begin {
         // Most lines are rows of numbers, and take no time.
         let names_keys = |line: &str| {
             let lower = line.to_lowercase();
-            KEYS.iter().any(|key| lower.contains(key))
+            let mut words = KEYS.iter().chain(&numbered::WORDS);
+            words.any(|word| lower.contains(word))
         };
         let mut tables = lines.filter_map(|(index, line)| {
             if !names_keys(line) {
@@ -140,21 +152,48 @@ impl Begin {
         };
         let rows = rows(index).map(|line| ByteRecord::from(separator.split(line)));
         let rows: Vec<_> = rows.filter(|row| row.len() == header.len()).collect();
-        // Rows of one key alone need no other names.
-        let is_of_one = rows
-            .windows(2)
-            .all(|pair| table.key(&pair[0]) == table.key(&pair[1]));
-        let is_wide = table.values.iter().any(|(_, name)| !name.is_empty());
-        if Column::COUNTS.iter().any(is_read) || (is_wide && is_of_one) {
+        let keys: Vec<_> = rows.iter().map(|row| table.key(row)).collect();
+        let is_other = match table.is_numbered {
+            // The rows of motors in turn are those of no shaft, but a column that is read is no number of a motor.
+            true => {
+                let mut read = Column::COUNTS
+                    .iter()
+                    .filter_map(|column| options.mapping(*column));
+                let is_key = |theirs: &String| table.keys.iter().any(|key| header[*key] == *theirs);
+                !numbered::alternate(&keys) || read.any(|mapping| is_key(&mapping.theirs))
+            }
+            // Rows of one key alone need no other names.
+            false => {
+                let is_of_one = keys.windows(2).all(|pair| pair[0] == pair[1]);
+                let is_wide = table.values.iter().any(|(_, name)| !name.is_empty());
+                Column::COUNTS.iter().any(is_read) || (is_wide && is_of_one)
+            }
+        };
+        if is_other {
             return None;
         }
         let mut columns = vec![header[table.time].clone()];
         columns.extend(names(
             rows.iter().flat_map(|row| table.fields(row)).collect(),
         ));
+        let keyed = table.is_numbered.then(|| Keyed {
+            columns: table.keys.iter().map(|key| header[*key].clone()).collect(),
+            keys: keys
+                .into_iter()
+                .collect::<BTreeSet<_>>()
+                .into_iter()
+                .collect(),
+        });
+        let has_fraction = |name: &String| {
+            let mut fields = rows.iter().flat_map(|row| table.fields(row));
+            fields.any(|field| field.name == *name && is_fraction(&field.text, separator))
+        };
+        let fractional = (0..columns.len()).filter(|place| has_fraction(&columns[*place]));
         Some(Self {
             layout: Layout {
                 is_stamped: is_stamped(head),
+                fractional: fractional.collect(),
+                keyed,
                 ..Layout::header(separator, columns, index)
             },
             table,
@@ -227,112 +266,4 @@ fn field(name: String, text: String) -> Field {
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::recording::read_log as read;
-
-    #[test]
-    fn numbers_of_one_time_are_one_row() {
-        for (header, row, shaft, iq) in [
-            ("Timestamp,Name,Value", "T,K,", "shaft", "iq"),
-            ("time,series,unit,value", "T,K,A,", "shaft", "iq"),
-            ("_time,_field,topic,_value", "T,K,m,", "shaft.m", "iq.m"),
-        ] {
-            let mut text = format!("# a log\n{header}\n");
-            for k in 0..9 {
-                for (key, value) in [("temp", 20), ("shaft", 8 * k), ("iq", k)] {
-                    text += &row.replace('T', &format!("0.{k}")).replace('K', key);
-                    text += &format!("{value}\n");
-                }
-            }
-            let time = header.split(',').next().unwrap();
-            let options = format!("t={time}:s,counts_large={shaft}:counts,current={iq}:A");
-            let recording = read(&text, &options).unwrap();
-            assert_eq!(recording.trace.counts_large[..3], [0, 8, 16], "{header}");
-            assert_eq!(recording.trace.current.unwrap()[..3], [0.0, 1.0, 2.0]);
-            assert_eq!(recording.t.len(), 9);
-        }
-    }
-
-    #[test]
-    fn numbers_of_a_joint_have_its_name() {
-        let mut text = String::from("time_s,joint,state,counts,iq\n");
-        for k in 0..9 {
-            text += &format!(
-                "0.{k}0,left,RUN,{},0.5\n0.{k}5,right,RUN,{},0\n",
-                8 * k,
-                9 - k
-            );
-        }
-        let error = read(&text, "").unwrap_err();
-        assert!(
-            error.contains("found: time_s; left.counts; left.iq; right.counts; right.iq"),
-            "{error}"
-        );
-        let recording = read(
-            &text,
-            "t=time_s,counts_large=right.counts,current=left.iq:A",
-        )
-        .unwrap();
-        assert_eq!(recording.trace.counts_large[..3], [9, 8, 7]);
-        assert_eq!(recording.trace.current.unwrap()[..2], [0.5; 2]);
-        // Where the user names a column of the table, or it has one of ours, its rows are the rows.
-        let wide = read(&text, "t=time_s,counts_large=counts").unwrap();
-        assert_eq!(wide.trace.counts_large[..3], [0, 9, 8]);
-        let own = read(&text.replace("counts", "counts_large"), "t=time_s").unwrap();
-        assert_eq!(own.trace.counts_large[..3], [0, 9, 8]);
-        // So are those of one joint.
-        let one: String = text
-            .lines()
-            .filter(|line| !line.contains("right"))
-            .map(|line| format!("{line}\n"))
-            .collect();
-        assert_eq!(read(&one, "").unwrap().trace.counts_large[..3], [0, 8, 16]);
-    }
-
-    #[test]
-    fn name_without_a_number_has_its_latest_one() {
-        let mut text = String::from("time;signal;value\n0,0;iq;7\n");
-        for k in 1..9 {
-            text += &format!("0,{k}1;shaft;{}\n0,{k}2;iq;{k},5\n0,{k}3;vbus;24\n", 8 * k);
-        }
-        let options = "t=time:s,counts_large=shaft:counts,current=iq:A";
-        let recording = read(&text, options).unwrap();
-        assert_eq!(recording.trace.counts_large[..3], [8, 16, 24]);
-        assert_eq!(recording.trace.current.unwrap()[..3], [7.0, 1.5, 2.5]);
-        let said = "17 rows without a position are left out, the first in line 2";
-        assert!(
-            recording.notes.iter().any(|note| note == said),
-            "{:?}",
-            recording.notes
-        );
-        // Two numbers of one name at one time are two rows.
-        let twice = read(&text.replace("0,22;iq", "0,21;shaft"), options).unwrap_err();
-        let said = "of the rows have the time of the row before, the first in line 7 at 0.21 s";
-        assert!(twice.contains(said), "{twice}");
-    }
-
-    #[test]
-    fn errors_name_line_and_names() {
-        let text = "time,name,value\n0,shaft,1\n0.001,shaft,2\n0.002,iq,3\n";
-        let error = read(text, "").unwrap_err();
-        let said = "r.csv: line 1: no column t; found: time; shaft; iq, separated by ','; name the columns";
-        assert!(error.starts_with(said), "{error}");
-        let columns = "t=time:s,counts_large=shaft:counts";
-        for (row, said) in [
-            (
-                "0.003,shaft",
-                "line 5: 2 fields where the first line has 3; remove the line",
-            ),
-            (
-                "0.003,shaft,x",
-                "line 5: column counts_large: 'x' is not a number",
-            ),
-        ] {
-            let error = read(&format!("{text}{row}\n"), columns).unwrap_err();
-            assert!(error.starts_with(&format!("r.csv: {said}")), "{error}");
-        }
-        // Values of names that are numbers are columns.
-        let error = read("time,channel,value\n0,1,5\n0.001,1,6\n", "").unwrap_err();
-        assert!(error.contains("found: time; channel; value"), "{error}");
-    }
-}
+mod tests;

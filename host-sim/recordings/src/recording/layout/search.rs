@@ -202,13 +202,9 @@ pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
 /// Places of the columns of `layout` that have a number with a fraction in the rows among `lines`.
 pub(super) fn fractional(layout: &Layout, lines: &[&str]) -> Vec<usize> {
     let rows = rows(layout, lines);
-    let is_fraction = |field: &String| {
-        let number = number(field, layout.separator);
-        number.is_some_and(|number| number.fract() != 0.0)
-    };
     let has_fraction = |place: &usize| {
-        rows.iter()
-            .any(|row| row.get(*place).is_some_and(is_fraction))
+        let mut fields = rows.iter().filter_map(|row| row.get(*place));
+        fields.any(|field| is_fraction(field, layout.separator))
     };
     (0..layout.names.len()).filter(has_fraction).collect()
 }
@@ -248,6 +244,11 @@ fn number(field: &str, separator: Separator) -> Option<f64> {
         true => field.replacen(',', ".", 1).parse().ok(),
         false => field.parse().ok(),
     }
+}
+
+/// Whether a field is a number with a fraction.
+pub(in super::super) fn is_fraction(field: &str, separator: Separator) -> bool {
+    number(field, separator).is_some_and(|number| number.fract() != 0.0)
 }
 
 /// Whether a field is a number or a time.

@@ -1,0 +1,145 @@
+//! Tests of the options that errors name.
+
+use crate::recording::{read_log as read, read_log_at as read_at};
+
+#[test]
+fn columns_of_two_levels_are_named_where_no_position_is() {
+    let log = |header: &str, level: u32| {
+        let rows = (0..20).map(|k| format!("{k}e-3,{},{},1\n", k / 2 % 2, level * (k % 2)));
+        format!("{header}\n# a comment\n\n{}", rows.collect::<String>())
+    };
+    let said = "r.csv: line 1: the columns s1, s2 are 0 or 1 in the first rows; if they are the lines of \
+                an encoder, make a recording of them with host-sim decode";
+    assert_eq!(read(&log("t,s1,s2,on", 1), "").unwrap_err(), said);
+    let error = read(&log("t,enc_a,enc_b,on", 1), "").unwrap_err();
+    assert!(
+        error.contains("the columns enc_a, enc_b are 0 or 1"),
+        "{error}"
+    );
+    for (header, level) in [("t,s1,s2,on", 2), ("t,s1,s2,pos", 1)] {
+        let error = read(&log(header, level), "").unwrap_err();
+        assert!(error.contains("no column counts_large; found: "), "{error}");
+    }
+    assert!(read(&log("t,s1,s2,on", 1), "counts_large=s1").is_ok());
+}
+
+#[test]
+fn position_with_fractions_is_taken_for_an_angle() {
+    for (rows, unit) in [
+        ("0;7\n1;8", "counts"),
+        ("0;7,0\n1;8", "counts"),
+        ("0;7\n1;8,5", "rad"),
+        ("0,5;7\n1;8", "counts"),
+    ] {
+        let error = read(&format!("time;position\n{rows}\n"), "").unwrap_err();
+        let said = format!("for example --column 't=time:s,counts_large=position:{unit}'");
+        assert!(error.contains(&said), "{rows}: {error}");
+    }
+}
+
+#[test]
+fn time_since_1970_is_proposed_with_its_unit() {
+    for (first, unit) in [
+        ("1700000000123456789", "ns"),
+        ("1700000000123456", "us"),
+        ("1700000000123", "ms"),
+        ("1700000000.5", "s"),
+        ("4200000000000", "s"),
+    ] {
+        // The column of the counts is none of time.
+        let error = read(&format!("time;position\n{first};1700000000123\n"), "").unwrap_err();
+        let said = format!("--column 't=time:{unit},counts_large=position:counts'");
+        assert!(error.contains(&said), "{first}: {error}");
+    }
+}
+
+#[test]
+fn example_names_no_target_error_or_duration() {
+    for (names, said) in [
+        (
+            "time_s,ref_theta,theta",
+            "'t=time_s,counts_large=theta:counts'; read without",
+        ),
+        (
+            "time_s,error_count,angle_deg",
+            "'t=time_s,counts_large=angle_deg'; read without",
+        ),
+        (
+            "loop_time_us,time,counts",
+            "'t=time:s,counts_large=counts'; read without",
+        ),
+        (
+            "time_s,dpos_deg,pos_err",
+            "'t=time_s,counts_large=POSITION:counts': by its name 'dpos_deg' is a rate, a target, an error, a \
+             difference or an electrical angle; read without",
+        ),
+    ] {
+        let error = read(&format!("{names}\n2,3,4\n3,4,5\n"), "").unwrap_err();
+        assert!(
+            error.contains(&format!("for example --column {said}")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn example_has_no_time_where_the_rate_is_stated() {
+    for (text, said) in [
+        (
+            "x,y\n0,1\n1,2\n",
+            "for example --column 'counts_large=POSITION:counts'; read without",
+        ),
+        (
+            "0,1\n1,2\n",
+            "give the number of the column, for example --column counts_large=2:counts; read",
+        ),
+        (
+            "1\n2\n",
+            "give the number of the column, for example --column counts_large=1:counts; read",
+        ),
+    ] {
+        let error = read_at(Some(1000.0), text, "").unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+    let error = read("1\n2\n", "").unwrap_err();
+    let said = "there are no names but 1 column; give the number of the column and the rate of the rows, for \
+                example --column counts_large=1:counts --row-rate 1000";
+    assert!(error.contains(said), "{error}");
+}
+
+#[test]
+fn log_without_a_time_is_told_of_the_rate_of_its_rows() {
+    let said = ", or give the rate of the rows with --row-rate HZ in the place of a time; ";
+    for (header, tells) in [
+        ("x,pos_deg", true),
+        ("pos_deg,v_rad", true),
+        ("T,pos_deg", false),
+        ("clock_ms,pos_deg", false),
+        ("Timer,pos_deg", false),
+        ("dt_ms,pos_deg", true),
+        ("a,pos_deg\n[ms],[deg]", false),
+        ("a,pos_deg\n[A],[deg]", true),
+    ] {
+        let error = read(&format!("{header}\n0,1\n1,2\n"), "").unwrap_err();
+        assert_eq!(error.contains(said), tells, "{header}: {error}");
+    }
+    let error = read("0,1\n1,2\n", "").unwrap_err();
+    assert!(!error.contains(said), "{error}");
+}
+
+#[test]
+fn position_of_a_known_log_without_a_time_has_its_unit() {
+    for (name, unit) in [
+        ("odrv0.axis0.encoder.pos_estimate", "rev"),
+        ("odrv0.axis0.pos_estimate", "rev"),
+        ("/joint_states/a/position", "rad"),
+        ("position", "rad"),
+        ("encoder_position", "rad"),
+    ] {
+        let error = read_at(Some(1000.0), &format!("# {name}\n-0.25\n0.5\n"), "").unwrap_err();
+        assert!(
+            error.contains(&format!("--column 'counts_large={name}:{unit}'")),
+            "{error}"
+        );
+    }
+}
