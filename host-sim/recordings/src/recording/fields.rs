@@ -42,7 +42,11 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
         },
         hex if hex.starts_with("0x") => "it is hexadecimal: write it in decimal".to_owned(),
         list if list.starts_with(['[', '{']) => {
-            "write one JSON object a line, with one number a field".to_owned()
+            let is_list = list.contains(|c: char| c.is_whitespace() || c == ',');
+            match is_list {
+                true => "it is a list: write each of its numbers in a field of its own".to_owned(),
+                false => "write it without brackets".to_owned(),
+            }
         }
         time if column == Column::T.name() && is_date(time) => {
             "write it in s, as 2025-03-01T12:00:00.000, or as 12:00:00.000".to_owned()
@@ -135,8 +139,13 @@ mod tests {
             ("5 x", "correct the field, or remove the row"),
             (
                 "\"[1,2]\"",
-                "write one JSON object a line, with one number a field",
+                "it is a list: write each of its numbers in a field of its own",
             ),
+            (
+                "[1. 2.]",
+                "it is a list: write each of its numbers in a field of its own",
+            ),
+            ("[0.5]:", "write it without brackets"),
             ("x", "correct the field, or remove the row"),
         ] {
             let text = format!("t,counts_large\n0,0\n0.001,{field}\n");

@@ -11,6 +11,9 @@ use super::super::named_fields::{Field, Mark};
 /// Begins a text that stands for a word which is no JSON.
 const WORD: char = '\0';
 
+/// Most numbers of a list that are fields.
+const MOST: usize = 64;
+
 /// The key under which `serde_json` hands over the text of a number, where its feature
 /// `arbitrary_precision` is on. Another package may turn it on.
 const NUMBER: &str = "$serde_json::private::Number";
@@ -86,6 +89,21 @@ impl<'de> Visitor<'de> for Inside<'_> {
         while let Some(value) = list.next_element()? {
             values.push(value);
         }
+        if !values.is_empty() && values.len() <= MOST && values.iter().all(is_number) {
+            for (place, value) in values.into_iter().enumerate() {
+                let name = format!("{}.{place}", self.name);
+                let number = Inside { name, to: self.to };
+                match value {
+                    Value::Null => number.visit_unit::<A::Error>(),
+                    Value::String(word) => number.visit_str(&word),
+                    value => {
+                        number.field(value.to_string(), Mark::Text);
+                        Ok(())
+                    }
+                }?;
+            }
+            return Ok(());
+        }
         let text = Value::from(values).to_string().replace("\\u0000", "");
         self.field(text, Mark::Text);
         Ok(())
@@ -124,6 +142,15 @@ impl<'de> Visitor<'de> for Inside<'_> {
         let text = Number::from_f64(value).map_or_else(String::new, |number| number.to_string());
         self.field(text, Mark::Text);
         Ok(())
+    }
+}
+
+/// Whether a value of a list is a number, or stands for none.
+fn is_number(value: &Value) -> bool {
+    match value {
+        Value::Number(_) | Value::Null => true,
+        Value::String(text) => text.starts_with(WORD),
+        _ => false,
     }
 }
 
@@ -212,10 +239,28 @@ mod tests {
             field("a", "", Mark::Blank("NaN")),
             field("b", "", Mark::Blank("-Infinity")),
             field("c", "NaN \" NaN", Mark::Text),
-            field("d", "[\"Infinity\",1]", Mark::Text),
+            field("d.0", "", Mark::Blank("Infinity")),
+            field("d.1", "1", Mark::Text),
             field("e", "", Mark::Blank("null")),
         ];
         assert_eq!(shown(line), expected);
+    }
+
+    #[test]
+    fn numbers_of_a_list_are_fields() {
+        let line = r#"{"q": [0.5, -2, null], "a": {"tau": [0.25]}, "name": ["j1", "j2"], "b": [[1, 2]], "c": []}"#;
+        let expected = [
+            field("q.0", "0.5", Mark::Text),
+            field("q.1", "-2", Mark::Text),
+            field("q.2", "", Mark::Blank("null")),
+            field("a.tau.0", "0.25", Mark::Text),
+            field("name", "[\"j1\",\"j2\"]", Mark::Text),
+            field("b", "[[1,2]]", Mark::Text),
+            field("c", "[]", Mark::Text),
+        ];
+        assert_eq!(shown(line), expected);
+        let long = format!("{{\"image\": [{}0]}}", "0,".repeat(MOST));
+        assert_eq!(shown(&long)[0].0, "image");
     }
 
     #[test]

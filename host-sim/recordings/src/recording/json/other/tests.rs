@@ -147,7 +147,7 @@ fn an_error_has_the_line_of_the_element_or_its_number() {
         ),
         (
             r#"{"t": [0], "counts_large": [5]}"#,
-            "line 1: column t: '[0]' is not a number",
+            "line 1: no column t; found: t.0; counts_large.0; name the columns",
         ),
         (
             "{\n \"t\": [0],\n \"counts_large\": [5]\n}\n",
