@@ -34,6 +34,9 @@ pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
     let back = last - t;
     let remedy = if (t - first).abs() <= NEAR * (last - first) && back < LONGEST_RUN_S {
         "a second run begins: cut the log there"
+    } else if lacks_zeros(last, t) {
+        "if fractions of a second lack their leading zeros, as .9 before .10, write them with all digits; else sort the \
+         rows by time"
     } else {
         "sort the rows by time, or remove the row"
     };
@@ -42,6 +45,13 @@ pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
         "t",
         &format!("{t} s is before the {last} s above it; {remedy}"),
     )
+}
+
+/// Whether fractions of a second whose leading zeros are missing explain the time `t` after `last`: after 0.9 and 0.99
+/// come 0.10 and 0.100 within one second.
+fn lacks_zeros(last: f64, t: f64) -> bool {
+    let [before, now] = [last, t].map(|t| t - t.floor());
+    t.floor() == last.floor() && before >= 0.5 && (0.1 - 1e-6..0.2).contains(&now)
 }
 
 /// Largest share of the rows that may have the time of the row before.
@@ -170,13 +180,24 @@ mod tests {
                 &[5_u64, 6, 7, 8, 5][..],
                 "a second run begins: cut the log there",
             ),
+            // 8 ms, 9 ms and 10 ms.
+            (
+                "s",
+                &[700, 800, 900, 100],
+                "if fractions of a second lack their leading zeros, as .9 before .10, write them with all digits",
+            ),
+            ("s", &[700, 800, 900, 300], "sort the rows by time"),
             (
                 "ms",
                 &[5, 6, 8, 7],
                 "sort the rows by time, or remove the row",
             ),
         ] {
-            let rows: String = times.iter().map(|t| format!("{t},0\n")).collect();
+            let time = |t: &u64| match unit {
+                "s" => format!("7.{t}"),
+                _ => t.to_string(),
+            };
+            let rows: String = times.iter().map(|t| format!("{},0\n", time(t))).collect();
             let error = read(
                 &format!("t,counts_large\n{rows}"),
                 &format!("t=t:{unit}"),
