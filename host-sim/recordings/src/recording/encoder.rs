@@ -17,6 +17,12 @@ const ROUNDED: f64 = 0.25;
 /// Counts of the log in a step of its positions from which the step is reported.
 const COARSE: f64 = 1.5;
 
+/// Units of which a revolution is no whole number: no encoder has a decimal part of one as its step.
+const IRRATIONAL: [&str; 2] = ["rad", "mrad"];
+
+/// Largest relative difference of the last digit of a log from the step of its positions.
+const DIGIT: f64 = 1e-3;
+
 /// Number of changes between 0 and 1 from which a column may be one line of an encoder. Fewer are those of a
 /// shaft that is hardly turned.
 const LINE: usize = 10;
@@ -33,6 +39,8 @@ pub(super) struct Encoder {
     origin: Option<f64>,
     /// Largest distance of a position from a whole number of counts behind the first one.
     rounded: f64,
+    /// Counts in a unit of an angle, and the name of this unit.
+    unit: Option<(f64, &'static str)>,
     /// Counts from the largest position to the next number of 32 bits.
     float_step: f64,
     /// The latest position, counts with a fraction, and the changes of the positions.
@@ -63,6 +71,7 @@ impl Encoder {
                 let position = row.number(column, at.place)?;
                 let counts_per_unit = f64::from(options.counts_per_rev[motor]) / per_rev;
                 let exact = position * counts_per_unit;
+                self.unit = Some((counts_per_unit, at.unit.name()));
                 if exact.abs() > 9e15 {
                     let position = shown(position);
                     return Err(row.failure(
@@ -155,6 +164,15 @@ impl Encoder {
         // A step that 32 bits do not resolve is theirs.
         let own = step.filter(|step| *step > self.float_step);
         let own = own.map(|step| (f64::from(counts_per_rev) / step).round());
+        if let (Some(step), Some((counts_per_unit, unit))) = (step, self.unit)
+            && IRRATIONAL.contains(&unit)
+            && let Some(digit) = power_of_ten(step / counts_per_unit)
+        {
+            return Some(format!(
+                "{off}; they are multiples of {} {unit}, the last digit of the log: log more digits",
+                shown(digit)
+            ));
+        }
         Some(match own {
             Some(own) if own >= 2.0 => format!(
                 "{off}; they are multiples of 1/{own} revolution: if these are the encoder's counts, give {own} \
@@ -163,6 +181,13 @@ impl Encoder {
             _ => format!("{off}; if the encoder has more counts, give them {given}"),
         })
     }
+}
+
+/// The power of ten that `step` is; `None` if it is none.
+fn power_of_ten(step: f64) -> Option<f64> {
+    let power = to_digits(step, 1);
+    let is_power = (power.log10() - power.log10().round()).abs() < 1e-9;
+    (is_power && (step / power - 1.0).abs() < DIGIT).then_some(power)
 }
 
 /// Distance of a number of 32 bits from the next larger one.

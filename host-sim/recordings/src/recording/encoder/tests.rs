@@ -123,6 +123,15 @@ fn counts_per_revolution_are_those_of_the_steps_of_the_angle() {
         let own = "they are multiples of 1/262144 revolution: if";
         assert_eq!(!notes[0].contains(own), is_of_floats, "{notes:?}");
     }
+    // Digits of a log in rad are no counts.
+    for (digits, last) in [(2, "0.01"), (3, "0.001")] {
+        let rounded = |turns: f64| format!("{:.digits$}", 6.283_185_307 * turns);
+        let notes = swing(1e5, rounded, "counts_large=counts_large:rad");
+        let said = format!(
+            "; they are multiples of {last} rad, the last digit of the log: log more digits"
+        );
+        assert!(notes[0].ends_with(&said), "{notes:?}");
+    }
     // Whole turns are no steps of an encoder.
     let turns = swing(
         1.0,
