@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Changes that are kept.
+/// Most changes that are kept. Of more, every second one is left out.
 const KEPT: usize = 2048;
 
 /// Fewest changes that determine a step.
@@ -31,19 +31,31 @@ const VARIED: f64 = 0.1;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grid {
     changes: Vec<f64>,
+    /// Number of all changes; those that are kept have a multiple of 2^`halvings` before them.
+    changed: usize,
+    halvings: u32,
     unchanged: usize,
 }
 
 impl Grid {
     /// Adds the change from a row to the next.
     pub(super) fn add(&mut self, change: f64) {
-        if self.changes.len() == KEPT {
+        if change == 0.0 {
+            self.unchanged += 1;
             return;
         }
-        match change {
-            0.0 => self.unchanged += 1,
-            _ => self.changes.push(change.abs()),
+        if self.changes.len() == KEPT {
+            let mut is_kept = false;
+            self.changes.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+            self.halvings += 1;
         }
+        if self.changed.is_multiple_of(1 << self.halvings) {
+            self.changes.push(change.abs());
+        }
+        self.changed += 1;
     }
 
     /// The step, in the unit of the changes; `None` if they are no multiples of one, or too few to tell.
@@ -53,7 +65,7 @@ impl Grid {
         }
         let mut changes = self.changes.clone();
         changes.sort_by(f64::total_cmp);
-        let rows = self.changes.len() + self.unchanged;
+        let rows = self.changed + self.unchanged;
         let is_slow = share(self.unchanged, rows) >= SLOW;
         (1..=PARTS).find_map(|parts| {
             let begin = changes[0] / f64::from(parts);
@@ -171,7 +183,7 @@ mod tests {
             grid.add(if k % 10 == 0 { 0.0 } else { -8.0 });
         }
         assert_eq!(grid.step(), Some(8.0));
-        grid.changes.extend([8.0; 5]);
+        (0..5).for_each(|_| grid.add(8.0));
         assert_eq!(grid.step(), None);
     }
 
@@ -194,9 +206,22 @@ mod tests {
     }
 
     #[test]
+    fn step_is_that_of_all_changes() {
+        // Changes by a multiple of 4 at the begin alone, and later ones by any number.
+        let mut grid = Grid::default();
+        (0..3000).for_each(|k| grid.add(f64::from(4 * (1 + k % 3))));
+        assert_eq!(grid.step(), Some(4.0));
+        (0..3000).for_each(|k| grid.add(f64::from(1 + k % 7)));
+        assert_eq!(grid.step(), Some(1.0));
+    }
+
+    #[test]
     fn memory_is_bounded() {
         let mut grid = Grid::default();
-        (0..5000).for_each(|k| grid.add(f64::from(k)));
-        assert_eq!((grid.changes.len(), grid.unchanged), (KEPT, 1));
+        (0..=5000).for_each(|k| grid.add(f64::from(k)));
+        // Every fourth one.
+        assert_eq!((grid.changes.len(), grid.unchanged), (1250, 1));
+        assert_eq!(grid.changes[..3], [1.0, 5.0, 9.0]);
+        assert_eq!((grid.changed, grid.changes[1249]), (5000, 4997.0));
     }
 }
