@@ -13,6 +13,7 @@ mod fields;
 mod formats;
 mod grid;
 mod header;
+mod held;
 mod hint;
 mod json;
 mod kinds;

@@ -41,8 +41,8 @@ pub(super) struct Columns<'a> {
     last_t: f64,
     t: Vec<f64>,
     lines: LineNumbers,
-    counts_large: Encoder,
-    counts_small: Encoder,
+    pub(super) counts_large: Encoder,
+    pub(super) counts_small: Encoder,
     current: Current,
     current_small: Current,
     edges: Vec<Option<EdgeStamp>>,
@@ -274,7 +274,7 @@ impl<'a> Columns<'a> {
     ) -> Result<Recording, Failure> {
         let mut notes = self.checked(name, places, layout)?;
         let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
-        notes.extend(clock::fast(rate_hz));
+        notes.extend(clock::fast(rate_hz).into_iter().chain(self.held(rate_hz)));
         let mut gaps = Gaps::default();
         for (k, step) in self.t.windows(2).enumerate() {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));

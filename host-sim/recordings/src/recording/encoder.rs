@@ -4,6 +4,7 @@ use estimator_core::Count;
 use terminal::failure::Failure;
 
 use super::grid::Grid;
+use super::held::{self, Held};
 use super::layout::Place;
 use super::numbers::shown;
 use super::options::{Column, ReadOptions};
@@ -46,6 +47,7 @@ pub(super) struct Encoder {
     /// The latest position, counts with a fraction, and the changes of the positions.
     exact: Option<f64>,
     grid: Grid,
+    held: Held,
     /// Whether the column has counts, not an angle.
     is_counts: bool,
     /// Number of rows whose reading differs from the row before.
@@ -93,6 +95,7 @@ impl Encoder {
         };
         if let Some(before) = self.exact.replace(exact) {
             self.grid.add(exact - before);
+            self.held.add(exact != before);
         }
         self.changes += usize::from(self.last.is_some() && raw != self.raw);
         self.has_counts |= !(0..=1).contains(&raw);
@@ -136,6 +139,13 @@ impl Encoder {
             )
         });
         step.into_iter().chain(line)
+    }
+
+    /// Note on a position that is held over several rows at `rate_hz`. Counts that change by one alone are those of a slow
+    /// shaft.
+    pub(super) fn held(&self, motor: usize, rate_hz: f64) -> Option<String> {
+        let rows = self.held.rows().filter(|_| self.grid.is_varied())?;
+        Some(held::note(Column::COUNTS[motor].name(), rows, rate_hz))
     }
 
     /// What is wrong with `counts_per_rev`, which a user gives as `given` says, by the step of the positions.

@@ -27,6 +27,10 @@ const SLOW: f64 = 0.1;
 /// speed.
 const VARIED: f64 = 0.1;
 
+/// Ratio from which a change is larger than the smallest one, and least share of such changes that are many.
+const LARGER: f64 = 1.5;
+const MANY_LARGER: f64 = 0.3;
+
 /// Changes of a column of positions, in memory that does not grow with its rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grid {
@@ -56,6 +60,16 @@ impl Grid {
             self.changes.push(change.abs());
         }
         self.changed += 1;
+    }
+
+    /// Whether a good part of the changes are larger than the smallest one.
+    pub(super) fn is_varied(&self) -> bool {
+        let least = self.changes.iter().copied().fold(f64::INFINITY, f64::min);
+        let larger = self
+            .changes
+            .iter()
+            .filter(|change| **change > LARGER * least);
+        share(larger.count(), self.changes.len()) >= MANY_LARGER
     }
 
     /// The step, in the unit of the changes; `None` if they are no multiples of one, or too few to tell.

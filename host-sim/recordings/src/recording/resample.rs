@@ -26,6 +26,7 @@ impl Recording {
         let rows = resampled_rows(first, last, self.t.len(), rate_hz, name)?;
         let t = (0..rows).map(|k| first + k as f64 / rate_hz).collect();
         self.replace_rows(t, rate_hz);
+        self.remove_held_notes();
         Ok(())
     }
 
