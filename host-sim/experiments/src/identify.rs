@@ -51,8 +51,6 @@ pub struct Identification {
 
 /// Largest allowed share of the motor's torque that the model does not contain.
 const MOST_UNEXPLAINED: f64 = 0.10;
-/// Length of a window, s.
-const WINDOW_S: f64 = 0.04;
 
 /// Identifies a device from its recordings, each with its name for messages. `clamped` states that
 /// the handle was clamped in recordings without `counts_small`. `current_options` are the parts of `--column`

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::equations::{Equations, SLIP, Shaft, TURNS, half_window};
 use super::fit::{Equation, Fit};
 use super::motion::Motion;
-use super::{MOST_UNEXPLAINED, WINDOW_S, breaks, handle, quantity};
+use super::{MOST_UNEXPLAINED, breaks, handle, quantity};
 use recordings::recording::{Recording, implausible_current};
 use simulation::device::Device;
 use terminal::failure::Failure;
@@ -37,8 +37,8 @@ pub(super) struct Gathered {
     /// The part of `--column` that names the current of the first recording.
     current_option: Option<String>,
     slowest_hz: Option<f64>,
-    /// Half of the shortest window, s.
-    half_s: Option<f64>,
+    /// The shortest and the longest window, s.
+    windows_s: Option<[f64; 2]>,
     /// The smallest and largest velocity of a window, rad/s.
     velocities: Option<[f64; 2]>,
     /// Whether a recording has no counts of the handle.
@@ -74,7 +74,10 @@ impl Gathered {
         let handle = trace.counts_small.as_ref();
         let handle = handle.map(|counts| motion(counts, device.stages.small.counts_per_rev));
         let breaks = breaks(&recording.t, period_s);
-        if recording.uneven_share() * WINDOW_S > UNEVEN_WINDOWS * period_s {
+        let window_s = 2.0 * half_window(period_s) as f64 * period_s;
+        let [shortest, longest] = self.windows_s.unwrap_or([window_s; 2]);
+        self.windows_s = Some([shortest.min(window_s), longest.max(window_s)]);
+        if recording.uneven_share() * window_s > UNEVEN_WINDOWS * period_s {
             self.uneven = self.uneven.take().or_else(|| recording.unevenness());
         }
         let shaft = Shaft {
@@ -87,7 +90,7 @@ impl Gathered {
             hand: false,
         };
         self.large.add(&shaft, place.0, place.1);
-        self.velocities = own.velocities(WINDOW_S, period_s, self.velocities);
+        self.velocities = own.velocities(window_s, period_s, self.velocities);
         self.travel[0] = self.travel[0].max(own.travel());
         if let (Some(option), None) = (current_option, &self.current_option) {
             self.current_option = Some(option.to_owned());
@@ -96,8 +99,6 @@ impl Gathered {
         self.largest_current = self.largest_current.max(largest);
         let slowest = self.slowest_hz.unwrap_or(trace.rate_hz);
         self.slowest_hz = Some(slowest.min(trace.rate_hz));
-        let half_s = half_window(period_s) as f64 * period_s;
-        self.half_s = Some(self.half_s.unwrap_or(half_s).min(half_s));
         let Some(handle) = &handle else {
             self.unseen = true;
             return Ok(());
@@ -131,6 +132,14 @@ impl Gathered {
         Ok(())
     }
 
+    /// The length of a window for a message; of several recordings the longest.
+    fn window_text(&self) -> String {
+        format!(
+            "{:.0} ms",
+            1e3 * self.windows_s.map_or(0.0, |[_, longest]| longest)
+        )
+    }
+
     /// Fits the large shaft's equation.
     ///
     /// # Errors
@@ -154,16 +163,18 @@ impl Gathered {
         let Some(fit) = Fit::new(&self.large.usable) else {
             return Err(match &self.uneven {
                 Some(uneven) => format!(
-                    "{uneven}; only {} of {} windows of 40 ms have even steps and turn one way; if only \
+                    "{uneven}; only {} of {} windows of {} have even steps and turn one way; if only \
                      column t is uneven, give --row-rate HZ, else --resample HZ",
                     self.large.usable.len(),
-                    self.large.windows
+                    self.large.windows,
+                    self.window_text()
                 ),
                 None => format!(
-                    "the large motor turns one way throughout only {} of {} windows of 40 ms; record \
+                    "the large motor turns one way throughout only {} of {} windows of {}; record \
                      the whole scene excite, with the handle held",
                     self.large.usable.len(),
-                    self.large.windows
+                    self.large.windows,
+                    self.window_text()
                 ),
             });
         };
@@ -206,7 +217,7 @@ impl Gathered {
                 }
             ));
         }
-        if let Some(half_s) = self.half_s
+        if let Some(half_s) = self.windows_s.map(|[shortest, _]| 0.5 * shortest)
             && fit.lag_s > LONGEST_LAG * half_s
         {
             let longest_s = LONGEST_LAG * half_s;

@@ -104,8 +104,12 @@ fn step(omega: f64, drive: f64, damping: f64, friction: f64, period_s: f64) -> f
         return end;
     }
     // The velocity passed zero; the rest of the period starts from rest.
-    let left = end / (end - omega) * period_s;
-    step(0.0, drive, damping, friction, left)
+    let stopped = -damping * omega / net;
+    let until = match damping.abs() * period_s > 1e-9 {
+        true => stopped.ln_1p() / damping,
+        false => -omega / net,
+    };
+    step(0.0, drive, damping, friction, period_s - until)
 }
 
 #[cfg(test)]
@@ -124,5 +128,19 @@ mod tests {
         // A reversal: 0.5 ms to stop at 5 a second, the rest at 1 a second.
         let turned = step(2.5e-3, -3.0, 0.0, 2.0, 1e-3);
         assert!((turned + 0.5e-3).abs() < 1e-9, "{turned}");
+        // Reversals with damping, against a solution in a hundred thousand steps.
+        for (omega, period_s) in [(20.0, 10e-3), (20.0, 5e-3), (2.0, 1e-3), (-20.0, 5e-3)] {
+            let (drive, damping, friction) = (-4000.0_f64.copysign(omega), 83.5, 352.0);
+            let turned = step(omega, drive, damping, friction, period_s);
+            let small_s = period_s / 1e5;
+            let expected = (0..100_000).fold(omega, |omega: f64, _| {
+                omega + small_s * (drive - damping * omega - friction.copysign(omega))
+            });
+            assert!(turned * omega < 0.0, "{turned}");
+            assert!(
+                (turned / expected - 1.0).abs() < 1e-3,
+                "{turned} {expected}"
+            );
+        }
     }
 }
