@@ -351,17 +351,7 @@ impl<'a> Columns<'a> {
             self.measured()
                 .map(|(column, lack)| measured_note(column, lack)),
         );
-        if let Some(line) = layout.rows_above {
-            notes.push(format!(
-                "the rows from line {line} to the header in line {} are not read: remove them, or cut the log there",
-                layout.line
-            ));
-        }
-        if layout.is_stamped {
-            notes.push(
-                "the times of a serial monitor before the lines are not read: they are those of arrival".to_owned(),
-            );
-        }
+        notes.extend(layout.notes(places));
         notes.extend(self.own_times.notes());
         notes.extend(repeated);
         if self.left_out > 0 {

@@ -21,12 +21,12 @@ pub(super) fn not_a_number(text: &str, [column, theirs]: [&str; 2], is_first: bo
     let remedy = match (text == theirs, prefixed::remedy(text)) {
         (true, _) => "the header is repeated: cut the log there".to_owned(),
         (false, Some(stamped)) => stamped,
-        (false, None) => remedy(text, column, is_first),
+        (false, None) => remedy(text, [column, theirs], is_first),
     };
     format!("{} is not a number; {remedy}", quoted(text))
 }
 
-fn remedy(text: &str, column: &str, is_first: bool) -> String {
+fn remedy(text: &str, [column, theirs]: [&str; 2], is_first: bool) -> String {
     let digits = |c: char| c.is_ascii_digit();
     let lower = text.to_lowercase();
     let is_needed = [Column::T, Column::CountsLarge]
@@ -37,7 +37,7 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
         word if is_without_value(word) || ["inf", "infinity"].contains(&word) => match is_needed {
             true => "remove the rows without a value".to_owned(),
             false => format!(
-                "remove the rows without a value, or rename the column {column} if the command does without it"
+                "remove the rows without a value, or rename the column {theirs} if the command does without it"
             ),
         },
         hex if hex.starts_with("0x") => "it is hexadecimal: write it in decimal".to_owned(),
@@ -184,7 +184,7 @@ mod tests {
                  them with --column",
             ),
             (
-                "t,counts_large,current\n0,0,NaN\n",
+                "t,counts_large,current\n0,0,1\n0.001,0,NaN\n",
                 "'NaN' is not a number; remove the rows without a value, or rename the column current \
                  if the command does without it",
             ),

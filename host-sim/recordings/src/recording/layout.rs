@@ -1,6 +1,7 @@
 //! Layout of a text: its separator, its header, and the columns that are read.
 
 mod labview;
+mod notes;
 mod places;
 mod search;
 mod stating;
@@ -18,7 +19,9 @@ use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
 pub(super) use places::{Part, Place, Places};
 pub(super) use search::{UNKNOWN, is_fraction, is_number};
-use search::{fractional, is_content, named, numbers, probable, since_1970, two_levels};
+use search::{
+    fractional, is_content, named, numbers, probable, since_1970, two_levels, without_value,
+};
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 
@@ -47,6 +50,8 @@ pub(super) struct Layout {
     pub(super) two_levels: Vec<usize>,
     /// Places of the columns that have a number with a fraction in the first rows.
     pub(super) fractional: Vec<usize>,
+    /// Places of the columns that have no value in the first rows.
+    pub(super) without_value: Vec<usize>,
     /// Places of the columns that have a time since 1970 in the first row, and its unit.
     pub(super) since_1970: Vec<(usize, &'static str)>,
     /// The first row of a text that has no header.
@@ -129,6 +134,7 @@ impl Layout {
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
             fractional: fractional(&layout, &lines),
+            without_value: without_value(&layout, &lines),
             since_1970: since_1970(&layout, &lines),
             ..layout
         })
@@ -150,6 +156,7 @@ impl Layout {
             searched: None,
             two_levels: Vec::new(),
             fractional: Vec::new(),
+            without_value: Vec::new(),
             since_1970: Vec::new(),
             first_row: String::new(),
             is_stamped: false,

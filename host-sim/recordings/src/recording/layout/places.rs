@@ -43,6 +43,8 @@ pub(in super::super) struct Places {
     columns: Vec<Place>,
     /// The column of time that --row-rate replaces.
     pub(in super::super) replaced_time: Option<Place>,
+    /// Optional columns that were found by their names and have no value in the first rows. They are not read.
+    pub(in super::super) without_value: Vec<(Column, usize)>,
     /// Whether a column was found because its name says what it is.
     pub(in super::super) by_names: bool,
 }
@@ -73,6 +75,21 @@ impl Places {
             self.by_names = !found.is_empty();
             self.columns.extend(found);
         }
+    }
+
+    /// Leaves out optional columns without a value that no option names. Stamps of edges may begin late.
+    fn leave_out_without_value(&mut self, layout: &Layout, options: &ReadOptions) {
+        let is_needed = |column| {
+            use Column::{CountsLarge, EdgeBound, EdgeTick, T};
+            matches!(column, T | CountsLarge | EdgeTick | EdgeBound)
+        };
+        let is_left_out = |at: &Place| {
+            layout.without_value.contains(&at.place)
+                && !is_needed(at.column)
+                && options.mapping(at.column).is_none()
+        };
+        let left_out = self.columns.extract_if(.., |at| is_left_out(at));
+        self.without_value = left_out.map(|at| (at.column, at.place)).collect();
     }
 
     /// Adds the column of the project's own name.
@@ -151,6 +168,7 @@ impl Layout {
             format: self.format(options),
             columns: Vec::new(),
             replaced_time: None,
+            without_value: Vec::new(),
             by_names: false,
         };
         for column in Column::ALL {
@@ -183,6 +201,7 @@ impl Layout {
                 }
             }
         }
+        places.leave_out_without_value(self, options);
         if let Some(hz) = options.row_rate_hz {
             if options.mapping(Column::T).is_some() {
                 return Err(Failure::Input(format!(
@@ -228,5 +247,46 @@ impl Layout {
             }
         }
         Ok(places)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::read_log as read;
+
+    fn log(header: &str, fields: &[&str]) -> String {
+        let row = |(k, field): (usize, &&str)| format!("{}e-3,{},{field}\n", k, 2 * k);
+        let rows: String = fields.iter().enumerate().map(row).collect();
+        format!("{header}\n{rows}")
+    }
+
+    #[test]
+    fn optional_column_without_a_number_is_left_out() {
+        for (header, name) in [
+            ("__time,/a/position,/a/effort", "/a/effort"),
+            ("t,counts_large,current", "current"),
+        ] {
+            for word in ["", "nan", "null"] {
+                let text = log(header, &[word; 5]).replace(",0,", ",0.0,");
+                let recording = read(&text, "").unwrap();
+                assert_eq!(recording.trace.current, None);
+                let said = format!(
+                    "column '{name}' has no number in the first rows and is not read as current; --column reads it"
+                );
+                assert!(recording.notes.contains(&said), "{:?}", recording.notes);
+                let error = read(&text, &format!("current={name}:A")).unwrap_err();
+                assert!(error.contains("column current: '"), "{error}");
+            }
+            // One number is a column.
+            let error = read(&log(header, &["nan", "0.5", "nan"]), "").unwrap_err();
+            let said = format!("rename the column {name}, which is optional");
+            assert!(error.ends_with(&said), "{error}");
+        }
+        let text = log("t,counts_large,edge_tick", &["", "", ""]);
+        assert!(
+            read(&text, "")
+                .unwrap_err()
+                .contains("no column edge_bound")
+        );
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::super::fields::is_without_value;
 use super::super::formats::Format;
 use super::super::moment::Moment;
 use super::super::options::{Column, Mapping, ReadOptions};
@@ -180,7 +181,7 @@ fn end_with(separator: Separator, lines: &[&str]) -> bool {
 pub(in super::super) const UNKNOWN: &str = "X";
 
 /// The fields of the rows of `layout` among `lines`.
-fn rows(layout: &Layout, lines: &[&str]) -> Vec<Vec<String>> {
+pub(super) fn rows(layout: &Layout, lines: &[&str]) -> Vec<Vec<String>> {
     let rows = lines.iter().skip(layout.skip as usize);
     let rows = rows.filter(|line| is_content(line) && comment(line).is_none());
     rows.map(|line| layout.separator.split(line)).collect()
@@ -207,6 +208,18 @@ pub(super) fn fractional(layout: &Layout, lines: &[&str]) -> Vec<usize> {
         fields.any(|field| is_fraction(field, layout.separator))
     };
     (0..layout.names.len()).filter(has_fraction).collect()
+}
+
+/// Places of the columns of `layout` that have no value in the rows among `lines`, at least two.
+pub(super) fn without_value(layout: &Layout, lines: &[&str]) -> Vec<usize> {
+    let rows = rows(layout, lines);
+    let has_value = |row: &Vec<String>, place: usize| {
+        row.get(place)
+            .is_some_and(|field| !is_without_value(field.trim()))
+    };
+    (0..layout.names.len())
+        .filter(|place| rows.len() > 1 && !rows.iter().any(|row| has_value(row, *place)))
+        .collect()
 }
 
 /// Seconds from 1970 to 2001 and to 2100, between which the time of a log is.
@@ -239,7 +252,7 @@ pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {
 }
 
 /// The number that a field is.
-fn number(field: &str, separator: Separator) -> Option<f64> {
+pub(super) fn number(field: &str, separator: Separator) -> Option<f64> {
     match separator.allows_decimal_comma() {
         true => field.replacen(',', ".", 1).parse().ok(),
         false => field.parse().ok(),
