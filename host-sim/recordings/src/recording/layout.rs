@@ -1,5 +1,6 @@
 //! Layout of a text: its separator, its header, and the columns that are read.
 
+mod cut_row;
 mod labview;
 mod notes;
 mod places;
@@ -52,6 +53,8 @@ pub(super) struct Layout {
     pub(super) fractional: Vec<usize>,
     /// Places of the columns that have no value in the first rows.
     pub(super) without_value: Vec<usize>,
+    /// Whether the first line of a text without a header is left out, because its first number may be cut.
+    pub(super) cuts_first: bool,
     /// Places of the columns that have a time since 1970 in the first row, and its unit.
     pub(super) since_1970: Vec<(usize, &'static str)>,
     /// The first row of a text that has no header.
@@ -114,7 +117,7 @@ impl Layout {
                 ..layout
             });
         }
-        let (layout, is_named) = match UnitRow::find(&lines) {
+        let (mut layout, is_named) = match UnitRow::find(&lines) {
             None => search(&lines),
             Some(units) => {
                 let mut without = lines.clone();
@@ -129,6 +132,7 @@ impl Layout {
         if is_named {
             layout.check_separator(&lines, name)?;
         }
+        layout.leave_out_cut_row(&lines);
         Ok(Self {
             has_rate: options.row_rate_hz.is_some(),
             is_stamped: is_stamped(head),
@@ -157,6 +161,7 @@ impl Layout {
             two_levels: Vec::new(),
             fractional: Vec::new(),
             without_value: Vec::new(),
+            cuts_first: false,
             since_1970: Vec::new(),
             first_row: String::new(),
             is_stamped: false,

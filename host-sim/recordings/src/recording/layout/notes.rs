@@ -13,6 +13,10 @@ impl Layout {
                 self.line
             ));
         }
+        if self.cuts_first {
+            notes
+                .push("line 1, the first one, is left out: its first number may be cut".to_owned());
+        }
         if self.is_stamped {
             notes.push(
                 "the times of a serial monitor before the lines are not read: they are those of arrival".to_owned(),
