@@ -10,6 +10,7 @@ mod currents;
 mod encoder;
 mod endings;
 mod fields;
+mod float_times;
 mod formats;
 mod grid;
 mod header;

@@ -353,6 +353,9 @@ impl<'a> Columns<'a> {
         );
         notes.extend(layout.notes(places));
         notes.extend(self.own_times.notes());
+        if self.replaced_place.is_none() {
+            notes.extend(self.own_times.floats.note());
+        }
         notes.extend(repeated);
         if self.left_out > 0 {
             notes.push(format!(

@@ -3,6 +3,7 @@
 use terminal::failure::Failure;
 
 use super::columns::scaled;
+use super::float_times::FloatTimes;
 use super::layout::{Part, Place};
 use super::moment::{DAY_NS, Kind, Moment};
 use super::row::Row;
@@ -20,6 +21,7 @@ const BITS: [i32; 2] = [32, 16];
 pub(super) struct OwnTimes {
     form: Option<Form>,
     wraps: Wraps,
+    pub(super) floats: FloatTimes,
 }
 
 /// What the times of all rows are.
@@ -53,7 +55,10 @@ impl OwnTimes {
             };
             let form = *self.form.get_or_insert(Form::Number { unit });
             return match form {
-                Form::Number { unit } => Ok(self.wraps.unwrapped(t, &periods(unit), row.line)),
+                Form::Number { unit } => {
+                    self.floats.add(t, unit.per_s());
+                    Ok(self.wraps.unwrapped(t, &periods(unit), row.line))
+                }
                 Form::Moment { .. } => Err(mixed(row, at)),
             };
         };
