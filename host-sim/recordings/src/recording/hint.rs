@@ -60,13 +60,13 @@ pub(super) fn option(layout: &Layout) -> String {
         };
     }
     format!(
-        "name the columns and units, for example --column '{}'{}",
+        "name the columns and units, for example --column {}{}",
         parts(layout),
         only_indirect(layout).unwrap_or_default()
     )
 }
 
-/// The parts of `--column` for the time and the position.
+/// The value of `--column` for the time and the position, with the units that no name states.
 fn parts(layout: &Layout) -> String {
     let time = || guess(layout, Column::T, &times(), "TIME");
     let parts = [
@@ -74,7 +74,20 @@ fn parts(layout: &Layout) -> String {
         guess(layout, Column::CountsLarge, &positions(), "POSITION"),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
-    parts.join(",")
+    let guessed: Vec<_> = parts.iter().filter_map(|part| part.guessed).collect();
+    let guessed = match guessed.as_slice() {
+        [] => String::new(),
+        [one] => format!(", where the unit {one} is a guess"),
+        all => format!(", where the units {} are guesses", all.join(" and ")),
+    };
+    let texts: Vec<_> = parts.into_iter().map(|part| part.text).collect();
+    format!("'{}'{guessed}", texts.join(","))
+}
+
+/// A part of `--column`, and its unit if neither the name nor the numbers tell it.
+struct Guess {
+    text: String,
+    guessed: Option<&'static str>,
 }
 
 /// The name of a position that is not measured at the shaft, where there is no other one.
@@ -123,12 +136,13 @@ pub(super) fn current(places: &Places, layout: &Layout) -> Option<String> {
         return Some(format!("{}={}", at.column.name(), theirs(layout, at.place)));
     }
     let words = ["current", "iq", "i_q", "amp", "torque", "effort"];
-    guess(layout, Column::Current, &words, "").filter(|part| !part.starts_with("current=:"))
+    let part = guess(layout, Column::Current, &words, "")?.text;
+    (!part.starts_with("current=:")).then_some(part)
 }
 
 /// The part of `--column` for `column`, whose name probably has one of the `words`; `None` if the
 /// column has its own name.
-fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<String> {
+fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<Guess> {
     let (ours, quantity) = (column.name(), column.quantity());
     let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
     let has_unit = |place: &usize| {
@@ -141,24 +155,31 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
         .or_else(|| place(&like))
         .or_else(|| (0..layout.names.len()).find(has_unit));
     let Some(place) = place else {
-        return Some(format!("{ours}={unknown}:{}", example(quantity)));
+        return Some(Guess {
+            text: format!("{ours}={unknown}:{}", example(quantity)),
+            guessed: None,
+        });
     };
     let name = &layout.names[place];
-    let known = known_unit(layout, quantity, place);
-    let unit = match layout.ending(quantity, place) {
-        // Of a name with another unit only its owner can say what the numbers are.
-        Ending::Unit(_) | Ending::Unknown(_) => String::new(),
-        Ending::Nothing if known.is_some() => format!(":{}", known.unwrap_or_default()),
-        Ending::Nothing if quantity == Quantity::Position && layout.fractional.contains(&place) => {
-            format!(":{ANGLE}")
-        }
-        Ending::Nothing => {
-            let mut known = layout.since_1970.iter();
-            let known = known.find(|(at, _)| quantity == Quantity::Time && *at == place);
-            format!(":{}", known.map_or(example(quantity), |(_, unit)| unit))
-        }
+    let since_1970 = || {
+        let mut known = layout.since_1970.iter();
+        let known = known.find(|(at, _)| quantity == Quantity::Time && *at == place);
+        known.map(|(_, unit)| *unit)
     };
-    (name != ours).then(|| format!("{ours}={}{unit}", theirs(layout, place)))
+    let is_angle = quantity == Quantity::Position && layout.fractional.contains(&place);
+    // Of a name with another unit only its owner can say what the numbers are.
+    let is_silent = matches!(layout.ending(quantity, place), Ending::Nothing);
+    let known = known_unit(layout, quantity, place).or_else(since_1970);
+    let guessed = (is_silent && known.is_none()).then(|| match is_angle {
+        true => ANGLE,
+        false => example(quantity),
+    });
+    let unit = known.filter(|_| is_silent).or(guessed);
+    let unit = unit.map_or_else(String::new, |unit| format!(":{unit}"));
+    (name != ours).then(|| Guess {
+        text: format!("{ours}={}{unit}", theirs(layout, place)),
+        guessed,
+    })
 }
 
 /// The unit of a position that has the name of one of a known log.
@@ -202,7 +223,7 @@ fn keyed(layout: &Layout) -> Option<String> {
         listed.push("...".to_owned());
     }
     Some(format!(
-        "each row is of one of several motors: '{}' is {}; name the columns of one motor, for example --column '{}'",
+        "each row is of one of several motors: '{}' is {}; name the columns of one motor, for example --column {}",
         short(&columns.join(".")),
         listed.join("; "),
         parts(layout)

@@ -58,7 +58,7 @@ fn example_names_no_target_error_or_duration() {
     for (names, said) in [
         (
             "time_s,ref_theta,theta",
-            "'t=time_s,counts_large=theta:counts'; read without",
+            "'t=time_s,counts_large=theta:counts', where the unit counts is a guess; read without",
         ),
         (
             "time_s,error_count,angle_deg",
@@ -66,7 +66,7 @@ fn example_names_no_target_error_or_duration() {
         ),
         (
             "loop_time_us,time,counts",
-            "'t=time:s,counts_large=counts'; read without",
+            "'t=time:s,counts_large=counts', where the unit s is a guess; read without",
         ),
         (
             "time_s,dpos_deg,pos_err",
@@ -141,5 +141,34 @@ fn position_of_a_known_log_without_a_time_has_its_unit() {
             error.contains(&format!("--column 'counts_large={name}:{unit}'")),
             "{error}"
         );
+    }
+}
+
+#[test]
+fn units_that_nothing_states_are_called_guesses() {
+    for (header, row, said) in [
+        (
+            "Time,Position",
+            "0,0.5",
+            "'t=Time:s,counts_large=Position:rad', where the units s and rad are guesses; ",
+        ),
+        (
+            "time_ms,angle",
+            "0,5",
+            "'t=time_ms,counts_large=angle:counts', where the unit counts is a guess; ",
+        ),
+        (
+            "stamp,angle_deg_x",
+            "1700000000000,5",
+            ":ms,counts_large=angle_deg_x:counts', where the unit counts is a guess; ",
+        ),
+        (
+            "a,encoder.pos_estimate",
+            "0,0.5",
+            "'t=TIME:s,counts_large=encoder.pos_estimate:rev', or give",
+        ),
+    ] {
+        let error = read(&format!("{header}\n{row}\n{row}\n"), "").unwrap_err();
+        assert!(error.contains(said), "{error}");
     }
 }

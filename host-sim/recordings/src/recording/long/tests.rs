@@ -137,7 +137,7 @@ fn numbers_of_motors_are_no_rows_of_one_shaft() {
         let error = read(&text, "").unwrap_err();
         let said = format!(
             "r.csv: line 1: each row is of one of several motors: '{key}' is 1; 2; name the columns of one motor, for \
-             example --column 't=time_s,counts_large=1.position:rad'"
+             example --column 't=time_s,counts_large=1.position:rad', where the unit rad is a guess"
         );
         assert_eq!(error, said);
         let one = read(
