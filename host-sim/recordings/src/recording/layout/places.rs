@@ -279,7 +279,7 @@ mod tests {
             }
             // One number is a column.
             let error = read(&log(header, &["nan", "0.5", "nan"]), "").unwrap_err();
-            let said = format!("rename the column {name}, which is optional");
+            let said = format!("rename the column {name} if the command does without it");
             assert!(error.ends_with(&said), "{error}");
         }
         let text = log("t,counts_large,edge_tick", &["", "", ""]);
