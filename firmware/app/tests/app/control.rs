@@ -123,6 +123,16 @@ fn any_fault_disables_the_amplifiers_in_the_same_tick() {
             }
         }
     }
+    // Fewer missed ticks do not.
+    let mut bench = Bench::start(FIRST);
+    assert!(
+        bench
+            .step(&Inputs {
+                missed: 3,
+                ..calm()
+            })
+            .is_some()
+    );
     // A jump of the large encoder, which the monitor finds.
     let mut bench = Bench::start(FIRST);
     bench.large = 100.0;
