@@ -125,7 +125,7 @@ fn counts_per_revolution_are_those_of_the_steps_of_the_angle() {
     }
     // Digits of a log in rad are no counts.
     for (digits, last) in [(2, "0.01"), (3, "0.001")] {
-        let rounded = |turns: f64| format!("{:.digits$}", 6.283_185_307 * turns);
+        let rounded = |turns: f64| format!("{:.digits$}", std::f64::consts::TAU * turns);
         let notes = swing(1e5, rounded, "counts_large=counts_large:rad");
         let said = format!(
             "; they are multiples of {last} rad, the last digit of the log: log more digits"
