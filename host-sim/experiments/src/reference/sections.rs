@@ -18,6 +18,13 @@ const JUMP: f64 = 30.0;
 /// Share of the displacements, of those that are not 0, that are usual.
 const USUAL: f64 = 0.9;
 
+/// A displacement is no motion either if it is this number of times larger than the displacements beside it, plus one
+/// count, and than the fastest of all but [`FASTEST`] of them, and but [`FEW`]: a shaft does not come to many times its
+/// highest speed for one row.
+const RESET: f64 = 10.0;
+const FASTEST: f64 = 1e-3;
+const FEW: usize = 3;
+
 /// What a row says of the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Row {
@@ -92,8 +99,11 @@ fn rows(recording: &Recording) -> Vec<Row> {
         let periods = (recording.t[to] - recording.t[from]) / period;
         f64::from(displacement(recording, from, to)) / periods.max(1.0)
     };
-    let usual = usual((1..rows).map(|k| speed(k - 1, k)).collect());
-    let jumps = |step: f64, beside: f64| step > JUMP * (1.0 + beside).max(usual);
+    let [usual, fastest] = usual((1..rows).map(|k| speed(k - 1, k)).collect());
+    let jumps = |step: f64, beside: f64| {
+        let beside = 1.0 + beside;
+        step > JUMP * beside.max(usual) || step > RESET * beside.max(fastest)
+    };
     let mut kinds = vec![Row::Next; rows];
     let (mut last, mut before) = (0, 0.0);
     for (k, kind) in kinds.iter_mut().enumerate().skip(1) {
@@ -119,12 +129,20 @@ fn displacement(recording: &Recording, from: usize, to: usize) -> u32 {
     (counts[to].wrapping_sub(counts[from]) as i32).unsigned_abs()
 }
 
-/// The largest usual speed; 0 for a count that does not change.
-fn usual(mut speeds: Vec<f64>) -> f64 {
+/// The largest usual speed, which is 0 for a count that does not change, and the highest one of a motion, which is
+/// infinite for few changes.
+fn usual(mut speeds: Vec<f64>) -> [f64; 2] {
     speeds.retain(|speed| *speed > 0.0);
     speeds.sort_by(f64::total_cmp);
     let share = (speeds.len() as f64 * USUAL) as usize;
-    speeds.get(share).copied().unwrap_or_default()
+    let beyond = FEW.max((speeds.len() as f64 * FASTEST) as usize);
+    let fastest = speeds.iter().rev().nth(beyond).copied();
+    let usual = speeds.get(share).copied().unwrap_or_default();
+    let determined = speeds.len() > 10 * FEW;
+    [
+        usual,
+        fastest.filter(|_| determined).unwrap_or(f64::INFINITY),
+    ]
 }
 
 /// Largest displacement from a row to one that continues its motion, counts.
@@ -188,6 +206,31 @@ mod tests {
         counts[25..].iter_mut().for_each(|count| *count += 1 << 20);
         assert_eq!(marked(&counts), [(25, Row::Jumped)]);
         assert_eq!(Motion::of(&recording(&counts)).fastest, 3.0);
+    }
+
+    #[test]
+    fn counter_that_jumps_by_many_times_the_highest_speed_is_found() {
+        // At most 8 counts a row, and no more than 7 in most of them.
+        let swing = |k: i64| (1600.0 * (k as f64 * 5e-3).sin()).floor() as i64;
+        for (at, jump, found) in [
+            (900, 120, true),
+            (950, -120, true),
+            (2200, 300, true),
+            (900, 60, false),
+        ] {
+            let counts: Vec<_> = (0..3000)
+                .map(|k| swing(k) + if k < at { 0 } else { jump })
+                .collect();
+            let expected = [(at as usize, Row::Jumped)];
+            assert_eq!(
+                marked(&counts),
+                expected[..usize::from(found)],
+                "{at} {jump}"
+            );
+        }
+        // Short motion in a log of rest with noise.
+        let brief = |k: i64| k % 2 + 40 * (k - 2000).clamp(0, 12);
+        assert_eq!(marked(&(0..4000).map(brief).collect::<Vec<_>>()), []);
     }
 
     #[test]
