@@ -43,8 +43,8 @@ impl PlantKind {
 /// The motors of [`Presets::image`].
 const MOTORS: [&str; 2] = ["large", "handle"];
 
-/// Control rates of a preset, Hz: those of recordings, which `tune` runs on too, and faster ones.
-const RATES_HZ: RangeInclusive<f64> = 10.0..=10e6;
+/// Rates of recordings, and control rates of a preset, Hz: `tune` runs on recordings too.
+pub const RATES_HZ: RangeInclusive<f64> = 10.0..=10e6;
 
 /// Values by estimator and parameter.
 pub type Estimators = BTreeMap<String, BTreeMap<String, f64>>;

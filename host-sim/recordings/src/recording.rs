@@ -349,6 +349,10 @@ mod tests {
             ),
             ("t,counts_large\n0,0\n", "r.csv: fewer than two rows"),
             (
+                "t,counts_large\n0,0\n1e-8,1\n",
+                "r.csv: column t: rows 1e-8 s apart are 100000000 Hz, which is above 10000000 Hz",
+            ),
+            (
                 "t,counts_large\n1,0\n1,0\n1,0\n",
                 "r.csv: column t: 67 % of the rows have the time of the row before, the first in line 3",
             ),

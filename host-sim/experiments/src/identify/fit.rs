@@ -79,19 +79,19 @@ impl Fit {
             .collect();
         let mut all = Normal::new(columns);
         blocks.iter().for_each(|block| all.add(block, 1.0));
-        let split = |solution| split(solution, lag_s);
+        let with_lag = |solution| split(solution, lag_s);
         let halved = [1.0, -1.0].map(|sign| {
             let equations: Vec<_> = equations.iter().map(|e| e.halved(sign)).collect();
             let (lag_s, drive) = converged(&equations);
-            super::fit::split(Normal::of(&equations, lag_s, drive).solve(), lag_s)
+            split(Normal::of(&equations, lag_s, drive).solve(), lag_s)
         });
         let without = blocks.iter().map(|block| {
             let mut rest = all.clone();
             rest.add(block, -1.0);
-            split(rest.solve())
+            with_lag(rest.solve())
         });
         let without = without.collect();
-        let (coefficients, lag_s) = split(all.solve());
+        let (coefficients, lag_s) = with_lag(all.solve());
         let mean_square = |f: &dyn Fn(&Equation) -> f64| {
             let sum: f64 = equations.iter().map(|e| f(e) * f(e)).sum();
             (sum / equations.len() as f64).sqrt()

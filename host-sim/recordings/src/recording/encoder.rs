@@ -159,6 +159,15 @@ impl Encoder {
                  {step}, because the estimators take each count for one of the encoder"
             ));
         }
+        if let (Some(step), Some((counts_per_unit, "rev"))) = (coarse, self.unit)
+            && (step / counts_per_unit).fract() == 0.0
+        {
+            return Some(
+                "positions are whole revolutions alone: if the numbers are counts, name their unit with --column \
+                 OURS=THEIRS:counts"
+                    .to_owned(),
+            );
+        }
         let off = match (coarse, self.rounded > ROUNDED) {
             (_, true) => format!(
                 "positions are up to {:.2} counts from whole counts with {counts_per_rev} counts/rev and are rounded \

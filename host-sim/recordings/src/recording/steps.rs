@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use device_files::presets::RATES_HZ;
 use terminal::failure::Failure;
 
 use super::numbers::shown;
@@ -27,8 +28,9 @@ const FEW: f64 = 20.0;
 /// Least ratio of a step to the one before for a pause behind rows that come together.
 const RISE: f64 = 3.0;
 
-/// Slowest rate of a recording, Hz.
-pub const SLOWEST_HZ: f64 = 10.0;
+/// Slowest and fastest rate of a recording, Hz.
+pub const SLOWEST_HZ: f64 = *RATES_HZ.start();
+const FASTEST_HZ: f64 = *RATES_HZ.end();
 
 /// Steps of `t` by their length, in memory that does not grow with their number.
 ///
@@ -140,6 +142,13 @@ impl Steps {
                 "{name}: column t: rows {} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
                  Hz; t must be in seconds, check that it is not in ms, us or ns, which --column \
                  t=NAME:ms states",
+                shown(to_digits(period, 7))
+            )));
+        }
+        if rate_hz > FASTEST_HZ {
+            return Err(Failure::Input(format!(
+                "{name}: column t: rows {} s apart are {rate_hz} Hz, which is above {FASTEST_HZ} Hz; t must be in \
+                 seconds, check that it is not in minutes, hours or days, and multiply it",
                 shown(to_digits(period, 7))
             )));
         }

@@ -132,15 +132,15 @@ fn counts_per_revolution_are_those_of_the_steps_of_the_angle() {
         );
         assert!(notes[0].ends_with(&said), "{notes:?}");
     }
-    // Whole turns are no steps of an encoder.
+    // Whole turns are no steps of an encoder: those of ODrive were counts once.
     let turns = swing(
         1.0,
         |turns| turns.to_string(),
         "counts_large=counts_large:rev",
     );
-    let said = "counts_large: positions change by multiples of 4096 counts alone with 4096 counts/rev; if the \
-                encoder has more counts, give them with ";
-    assert!(turns[0].starts_with(said), "{turns:?}");
+    let said = "counts_large: positions are whole revolutions alone: if the numbers are counts, name their unit \
+                with --column OURS=THEIRS:counts";
+    assert_eq!(turns, [said]);
 }
 
 #[test]
