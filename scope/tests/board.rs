@@ -26,6 +26,14 @@ fn port(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
     port
 }
 
+/// A board that a test plays, and its port.
+fn played(shared: Shared) -> (Arc<Shared>, String) {
+    let shared = Arc::new(shared);
+    let of_board = Arc::clone(&shared);
+    let port = port(move |stream| play(stream, &of_board));
+    (shared, port)
+}
+
 /// The server with a board at this port, to its end.
 fn run(port: &str, timeout: &str) -> Output {
     let mut process = Process::new(env!("CARGO_BIN_EXE_scope"));
@@ -121,12 +129,10 @@ fn play(mut stream: TcpStream, shared: &Shared) {
 
 #[test]
 fn board_that_runs_a_scene_already_is_disarmed() {
-    let shared = Arc::new(Shared {
+    let (shared, port) = played(Shared {
         obeys: true,
         ..Shared::default()
     });
-    let of_board = Arc::clone(&shared);
-    let port = port(move |stream| play(stream, &of_board));
     let server = Server::start(&["--board", &port, "--timeout", "60"]);
     let mut page = server.joined();
     page.lives = true;
@@ -139,9 +145,7 @@ fn board_that_runs_a_scene_already_is_disarmed() {
 
 #[test]
 fn page_of_a_silent_board_says_so_and_has_no_controls() {
-    let shared = Arc::new(Shared::default());
-    let of_board = Arc::clone(&shared);
-    let port = port(move |stream| play(stream, &of_board));
+    let (shared, port) = played(Shared::default());
     let server = Server::start(&["--board", &port, "--timeout", "2"]);
     let Some(mut browser) = Browser::start() else {
         return;
@@ -163,9 +167,7 @@ fn page_of_a_silent_board_says_so_and_has_no_controls() {
 
 #[test]
 fn board_that_falls_silent_is_told_and_gets_no_command_but_disarm() {
-    let shared = Arc::new(Shared::default());
-    let of_board = Arc::clone(&shared);
-    let port = port(move |stream| play(stream, &of_board));
+    let (shared, port) = played(Shared::default());
     let mut server = Server::start(&["--board", &port, "--timeout", "2"]);
     let mut page = server.joined();
     page.lives = true;
@@ -198,9 +200,7 @@ fn board_that_falls_silent_is_told_and_gets_no_command_but_disarm() {
 /// The server ends then: the page must not show the last state as that of now.
 #[test]
 fn page_of_a_lost_board_says_so() {
-    let shared = Arc::new(Shared::default());
-    let of_board = Arc::clone(&shared);
-    let port = port(move |stream| play(stream, &of_board));
+    let (shared, port) = played(Shared::default());
     let server = Server::start(&["--board", &port, "--timeout", "60"]);
     let Some(mut browser) = Browser::start() else {
         return;
@@ -224,9 +224,7 @@ fn page_of_a_lost_board_says_so() {
 /// What a board does not report has no empty plot and no empty line.
 #[test]
 fn page_of_a_board_shows_what_the_board_reports_and_says_what_it_does_not() {
-    let shared = Arc::new(Shared::default());
-    let of_board = Arc::clone(&shared);
-    let port = port(move |stream| play(stream, &of_board));
+    let (_, port) = played(Shared::default());
     let server = Server::start(&["--board", &port, "--timeout", "60"]);
     let Some(mut browser) = Browser::start() else {
         return;
