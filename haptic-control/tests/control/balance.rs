@@ -289,6 +289,30 @@ fn motor_that_turns_by_four_counts_in_each_quarter_of_a_window_has_a_direction()
     }
 }
 
+/// Whichever quarter it is, the friction of a motor that rests for a part of a window has either sign.
+#[test]
+fn motor_that_rests_in_one_quarter_of_each_window_has_no_direction() {
+    let count = TAU / f64::from(DEVICE.large.counts_per_rev);
+    let against = ZERO + 2.0 * rounding();
+    for sign in [1.0, -1.0] {
+        for resting in [None, Some(0), Some(1), Some(2), Some(3)] {
+            // Windows begin 6 ticks after the start, and each other quarter has 8 counts.
+            let turn = |t: f64| {
+                let quarters = (t - 6e-4) / (0.25 * WINDOW_S);
+                let whole = quarters.div_euclid(4.0);
+                let within = quarters - 4.0 * whole;
+                let rested = resting.map_or(0.0, |quarter: u8| {
+                    (within - f64::from(quarter)).clamp(0.0, 1.0)
+                });
+                let each = if resting.is_some() { 3.0 } else { 4.0 };
+                sign * (8.0 * (each * whole + within - rested) + 0.5) * count
+            };
+            let at = found_s(10e3, 0.1, turn, turn, |_| -sign * against);
+            assert_eq!(at.is_some(), resting.is_none(), "{resting:?}, {sign}");
+        }
+    }
+}
+
 #[test]
 fn inertia_belongs_to_the_balance() {
     // Both shafts accelerate together: the current is that of the friction and of the inertia, 0.4 A.
