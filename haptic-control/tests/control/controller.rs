@@ -1,12 +1,14 @@
 //! The controller of one scene: its states, copied, compared and started again.
 
+use std::f64::consts::TAU;
+
 use estimator_core::{
     Count, FiniteDifference, Handover, Hertz, Sample, Side, SteadyKalmanTriple, VelocityEstimator,
     preset,
 };
 use haptic_control::{
-    Controller, ControllerState, Detents, FreeAir, Hold, NewtonMetres, Off, RadPerS, Scene, Senses,
-    Texture, Torque, Viscous,
+    Controller, ControllerState, Detents, FreeAir, Hold, Inertia, NewtonMetres, Off, RadPerS,
+    Scene, Senses, Texture, Torque, Viscous,
 };
 
 use crate::bench::{DEVICE, HANDLE, LARGE, Large, RATE, RIG};
@@ -194,4 +196,27 @@ fn slip_is_the_large_motors_velocity_minus_the_handles() {
             "{large} {handle}: {small} {wanted}"
         );
     }
+}
+
+/// Half of the handle's own inertia is added at 200 rad/s².
+#[test]
+fn inertia_renders_the_acceleration_of_the_handle() {
+    const ADDED: f64 = 2.5e-6;
+    const ACCELERATION: f64 = 200.0;
+    let scene = Inertia::new(ADDED as f32, 5e-6).unwrap();
+    let controller = Controller::new(scene, LARGE, HANDLE, &RIG);
+    let mut state = controller.start(&Sample::default());
+    let torques = (0..5000).map(|k| {
+        let t = f64::from(k) / RATE.0;
+        let counts = 0.5 * ACCELERATION * t * t * f64::from(DEVICE.small.counts_per_rev) / TAU;
+        let sample = Sample::default().with_coupled(Count(counts as u32));
+        f64::from(controller.step(&mut state, &sample).torque.0)
+    });
+    // The mean of the last tenth of a second.
+    let torque = torques.skip(4000).sum::<f64>() / 1000.0;
+    let expected = -ADDED * ACCELERATION;
+    assert!(
+        (torque / expected - 1.0).abs() < 0.01,
+        "{torque} {expected}"
+    );
 }

@@ -135,6 +135,10 @@ fn strokes_come_in_mirrored_groups() {
         begin += 2 * duration;
     }
     assert_eq!(begin, STROKES_MS);
+    let largest =
+        |of: fn(&Currents) -> Amps| currents.iter().map(|it| of(it).get()).fold(0.0, f32::max);
+    let strokes = [Excite::STROKES.large, Excite::STROKES.small].map(Amps::get);
+    assert_eq!([largest(|it| it.large), largest(|it| it.small)], strokes);
 }
 
 #[test]

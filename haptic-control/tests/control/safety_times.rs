@@ -284,3 +284,27 @@ fn silence_that_disarms_may_be_shorter_than_that_of_a_scene() {
         (Mode::Boot, Stop::CommandTimeout)
     );
 }
+
+/// What ends the calm ticks is not a command: the silence is as long as without it.
+#[test]
+fn end_of_the_calm_ticks_does_not_change_the_silence() {
+    for found in [None, Some(1), Some(40), Some(99)] {
+        let mut state = running();
+        let silent = (0..1000).take_while(|tick| {
+            if found == Some(*tick) {
+                state.end_calm();
+            }
+            if !SAFETY.pass_calm(&mut state, None) {
+                SAFETY.tick(&mut state, &WELL, None);
+            }
+            state.mode() == Mode::Running
+        });
+        assert_eq!(silent.count(), 100, "{found:?}");
+        assert_eq!(state.stop(), Stop::CommandTimeout);
+    }
+    // Before the device is armed no tick is calm.
+    let mut state = SAFETY.start(Stop::None);
+    state.end_calm();
+    silent(&mut state);
+    assert_eq!((state.mode(), state.stop()), (Mode::Boot, Stop::None));
+}
