@@ -40,8 +40,8 @@ pub const PROTOCOL: u16 = 1;
 
 /// Baud rate of a serial port, 8 data bits, no parity, 1 stop bit. The dividers of the 42 MHz of APB1
 /// and of the 36 MHz of ST-LINK's own controller are whole, 28 and 24, so neither end has an error of
-/// rate. Frames with all that an image can add take 81 % of it, 122 bytes per
-/// millisecond; an index pulse adds 41 bytes to one of them.
+/// rate. Frames with all that an image can add take 81 % of it, 122 bytes per millisecond; an index pulse
+/// adds 41 bytes to one of them.
 pub const BAUD: u32 = 1_500_000;
 
 /// First byte of a frame.

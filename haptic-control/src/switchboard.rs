@@ -69,9 +69,9 @@ scenes!(active_scene);
 ///
 /// The scene changes between two ticks. The difference of the currents before and after the change
 /// is added to the new currents and fades with a time constant of 20 ms, so that the torque does
-/// not jump. Changes in every tick are low-passed with this time constant, and so are the currents by which
-/// the scene answers motion meanwhile. An estimator that both scenes need continues; one that the scene before did not need
-/// starts at rest.
+/// not jump. Changes in every tick are low-passed with this time constant, and so are the currents by
+/// which the scene answers motion meanwhile. An estimator that both scenes need continues; one that the
+/// scene before did not need starts at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Switchboard<L, H> {
     large: L,

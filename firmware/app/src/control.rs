@@ -331,16 +331,13 @@ impl Control {
     fn arm_by_itself(&mut self, command: Option<Request>) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
-        match (command, self.tick()) {
-            (None | Some(Request::KeepAlive), SELECT) => return Some(Request::Select(FIRST)),
-            (None | Some(Request::KeepAlive), ARM) => {
-                self.auto_arm = false;
-                return Some(Request::Arm);
-            }
-            (None | Some(Request::KeepAlive), _) => {}
-            (Some(_), _) => self.auto_arm = false,
+        let is_alone = matches!(command, None | Some(Request::KeepAlive));
+        self.auto_arm = is_alone && self.tick() != ARM;
+        match self.tick() {
+            SELECT if is_alone => Some(Request::Select(FIRST)),
+            ARM if is_alone => Some(Request::Arm),
+            _ => command,
         }
-        command
     }
 }
 

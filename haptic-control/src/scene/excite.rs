@@ -61,14 +61,15 @@ pub struct ExciteState {
 
 /// Largest speed of the large motor, rad/s.
 const LARGE_SPEED: f64 = 60.0;
-/// Largest angle of the handle from the start, rad.
-const HANDLE_ANGLE: f32 = 2.0;
-/// Largest change of the handle's angle in a millisecond, rad.
-const HANDLE_STEP: f32 = 0.025;
 /// Number of runs of a section, with alternating sign.
 const PASSES: u8 = 4;
 
 impl Excite {
+    /// Largest angle of the handle from the start.
+    pub const LARGEST_ANGLE: Radians = Radians(2.0);
+    /// Largest change of the handle's angle in a millisecond.
+    pub const LARGEST_STEP: Radians = Radians(0.025);
+
     /// Largest currents of the strokes, with which the pattern begins.
     pub const STROKES: Currents = {
         let [large, small] = LARGEST_OF_STROKES;
@@ -202,7 +203,7 @@ impl Scene for Excite {
             );
             state.before = handle.angle;
             let within = |x: f32, bound: f32| x < bound && x > -bound;
-            if !within(angle, HANDLE_ANGLE) || !within(moved, HANDLE_STEP) {
+            if !within(angle, Self::LARGEST_ANGLE.0) || !within(moved, Self::LARGEST_STEP.0) {
                 state.end();
             }
         }

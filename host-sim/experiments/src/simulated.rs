@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use haptic_control::{LoopPoles, SceneKind};
+use haptic_control::{Excite, LoopPoles, SceneKind};
 
 use crate::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, loop_ticks, named, usual};
 use catalogue::estimators::Kind;
@@ -18,8 +18,6 @@ use terminal::failure::Failure;
 const EXCITE_S: f64 = 16.0;
 /// Time before the end of scene excite, or of a run, from which a current is certain, s.
 const PAUSE_S: f64 = 0.2;
-/// Change of the handle's angle in a millisecond from which scene excite ends, rad.
-const EXCITE_STEP_RAD: f64 = 0.025;
 
 /// What a recording of a scenario or of a scene is made from.
 #[derive(Clone, Debug)]
@@ -130,17 +128,19 @@ impl Run {
             return None;
         }
         let counts = self.device.stages.small.counts_per_rev;
-        let why = match TAU / f64::from(counts) > EXCITE_STEP_RAD {
+        let (angle, step) = (Excite::LARGEST_ANGLE.0, Excite::LARGEST_STEP.0);
+        let fewest = TAU / f64::from(step);
+        let why = match f64::from(counts) < fewest {
             true => format!(
                 "a count of small.counts_per_rev = {counts} is more than that: give --hand clamp, or an encoder \
                  of {:.0} counts or more",
-                (TAU / EXCITE_STEP_RAD).ceil()
+                fewest.ceil()
             ),
             false => "hold the handle, with --hand still or --hand clamp".to_owned(),
         };
         Some(format!(
-            "scene excite ended after {last_s:.2} s, because the handle moved by more than {EXCITE_STEP_RAD} rad in \
-             a millisecond or 2 rad in all; {why}"
+            "scene excite ended after {last_s:.2} s, because the handle moved by more than {step} rad in \
+             a millisecond or {angle} rad in all; {why}"
         ))
     }
 

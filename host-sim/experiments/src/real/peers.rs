@@ -10,7 +10,6 @@ mod path;
 mod tune;
 
 use estimator_core::FiniteDifference;
-
 use scoring::evaluation::Evaluation;
 use scoring::score::{Truth, Wanted};
 use simulation::trace::Trace;

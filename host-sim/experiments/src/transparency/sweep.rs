@@ -11,7 +11,6 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use estimator_core::{Amps, Count, Hertz, Sample, Skip};
 use haptic_control::{Controller, Handle, LoopPoles, NewtonMetres, Radians, Rig, Scene, Wanted};
-
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
