@@ -1,72 +1,48 @@
-//! Recordings of a motor, read from CSV.
+//! Recordings of a motor, read from the logs that users have.
+//!
+//! A log is read in this order: `records` find the rows in any form of a log, with `text` for rows of fields;
+//! `layout` finds the columns and their units by names, or by the `options` of the user; `columns` collect the
+//! rows, with `times` for their times and `encoder` for their counts. `survey` and `parts` read a log that is
+//! larger than the memory in two passes.
 
-mod absolute;
 mod board;
-mod bursts;
 mod capture;
-mod clock;
 mod columns;
-mod currents;
 mod encoder;
-mod endings;
-mod fields;
-mod float_times;
-mod formats;
-mod grid;
-mod header;
-mod held;
-mod hint;
-mod json;
-mod kinds;
-mod labelled;
 mod layout;
-mod lines;
-mod long;
-mod moment;
-mod named_fields;
 mod numbers;
 mod options;
-mod own_times;
 mod parts;
-mod prefixed;
 mod records;
-mod resample;
-mod row;
 mod rows;
-mod separator;
-mod sources;
-mod stamps;
-mod stated;
-mod steps;
 mod survey;
 mod text;
-mod thousands;
 mod times;
-mod units;
-mod value_changes;
 mod write;
 
 use std::io::Read;
 use std::path::Path;
 
-pub use absolute::{after, boundary};
 pub use board::{BoardColumns, BoardReader};
 pub use capture::Capture;
-pub use currents::implausible_current;
-pub use formats::{KnownLog, known_logs};
-pub(crate) use kinds::check as check_kind;
+pub use columns::currents::implausible_current;
+pub use encoder::absolute::{after, boundary};
+pub use layout::formats::{KnownLog, known_logs};
 pub use numbers::shown;
 pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
+pub use options::stated::{counts_per_rev_line, stated_counts_per_rev};
 pub use parts::Parts;
-pub use stated::{counts_per_rev_line, stated_counts_per_rev};
-pub use steps::SLOWEST_HZ;
+pub(crate) use records::kinds::check as check_kind;
 pub use survey::Survey;
+pub use times::steps::SLOWEST_HZ;
 
 use crate::log::Log;
 use columns::Columns;
-use currents::largest;
+use columns::currents::largest;
+use layout::hint;
 use records::Records;
+use times::clock;
 
 use simulation::trace::Trace;
 use terminal::failure::Failure;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use super::fields::is_without_value;
 use super::options::ReadOptions;
 use super::records::Records;
+use super::text::fields::is_without_value;
 use crate::telemetry::{COLUMNS, LearnedLine};
 use terminal::failure::Failure;
 

@@ -8,11 +8,11 @@ use std::io::Read;
 use terminal::failure::Failure;
 
 use super::Recording;
-use super::header::{found, short};
+use super::layout::header::{found, short};
 use super::layout::{Layout, Place};
 use super::options::{Column, Mapping, ReadOptions};
-use super::own_times::OwnTimes;
 use super::records::Records;
+use super::times::own_times::OwnTimes;
 use decoder::Decoder;
 use levels::{Kind, level};
 

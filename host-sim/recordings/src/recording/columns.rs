@@ -1,25 +1,30 @@
 //! Columns of a recording while it is read.
 
+pub(super) mod currents;
+pub(super) mod stamps;
+
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use terminal::failure::Failure;
 
-use super::clock::Gaps;
-use super::currents::{Current, measured_note};
+use super::Recording;
 use super::encoder::Encoder;
-use super::fields::is_without_value;
+use super::encoder::absolute;
+use super::layout::sources::sources;
 use super::layout::{Layout, Place, Places};
-use super::lines::LineNumbers;
-use super::named_fields::Mark;
+use super::options::units::WRAP;
 use super::options::{Column, ReadOptions};
-use super::own_times::OwnTimes;
 use super::records::Records;
-use super::row::Row;
-use super::sources::sources;
-use super::stamps::{Stamp, Stamps};
-use super::thousands::Thousands;
+use super::records::named_fields::Mark;
+use super::text::fields::is_without_value;
+use super::text::lines::LineNumbers;
+use super::text::row::Row;
+use super::text::thousands::Thousands;
+use super::times::clock;
+use super::times::clock::Gaps;
+use super::times::own_times::OwnTimes;
 use super::times::{self, Repeated, Replaced};
-use super::units::WRAP;
-use super::{Recording, absolute, clock};
+use currents::{Current, measured_note};
+use stamps::{Stamp, Stamps};
 
 /// Columns whose numbers may have separators of thousands.
 const MARKED: [Column; 2] = [Column::CountsLarge, Column::CountsSmall];

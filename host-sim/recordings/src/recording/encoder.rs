@@ -1,16 +1,20 @@
 //! Counts of an encoder while its column is read.
 
+pub(super) mod absolute;
+pub(super) mod grid;
+pub(super) mod held;
+
 use estimator_core::Count;
 use terminal::failure::Failure;
 
-use super::grid::Grid;
-use super::held::{self, Held};
 use super::layout::Place;
 use super::numbers::shown;
+use super::options::units::Scale;
 use super::options::{Column, ReadOptions};
-use super::row::Row;
-use super::steps::to_digits;
-use super::units::Scale;
+use super::text::row::Row;
+use super::times::steps::to_digits;
+use grid::Grid;
+use held::Held;
 
 /// Distance from a whole count from which positions are reported as rounded.
 const ROUNDED: f64 = 0.25;

@@ -1,10 +1,15 @@
 //! Layout of a text: its separator, its header, and the columns that are read.
 
 mod cut_row;
+pub(super) mod endings;
+pub(super) mod formats;
+pub(super) mod header;
+pub(super) mod hint;
 mod labview;
 mod notes;
 mod places;
 mod search;
+pub(super) mod sources;
 mod stating;
 mod unit_row;
 mod words;
@@ -13,11 +18,10 @@ use terminal::failure::Failure;
 
 use crate::log::HEAD;
 
-use super::endings::Ending;
-use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
-use super::header;
 use super::options::{Column, Mapping, ReadOptions};
-use super::separator::{Separator, comment, stamp};
+use super::text::separator::{Separator, comment, stamp};
+use endings::Ending;
+use formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 pub(super) use places::{Part, Place, Places};
 pub(super) use search::{UNKNOWN, is_fraction, is_number};
 use search::{

@@ -1,10 +1,13 @@
 //! What a user says about a recording: its columns, their units, the encoder and the clock.
 
+pub(super) mod stated;
+pub(super) mod units;
+
 use simulation::device::Device;
 use terminal::failure::Failure;
 
-use super::steps::SLOWEST_HZ;
-use super::units::{Quantity, Unit};
+use super::times::steps::SLOWEST_HZ;
+use units::{Quantity, Unit};
 
 /// A column of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

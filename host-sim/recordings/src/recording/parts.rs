@@ -6,12 +6,12 @@ use estimator_core::Count;
 use terminal::failure::Failure;
 
 use super::Recording;
-use super::absolute;
-use super::clock::{Gaps, Uneven};
 use super::columns::Columns;
+use super::encoder::absolute;
 use super::options::ReadOptions;
 use super::records::Records;
 use super::survey::Survey;
+use super::times::clock::{Gaps, Uneven};
 
 /// Rows that are read at once.
 pub(super) const BLOCK: usize = 1 << 13;

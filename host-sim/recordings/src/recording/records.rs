@@ -1,5 +1,12 @@
 //! The rows of a log, in any layout.
 
+pub(super) mod json;
+pub(super) mod kinds;
+pub(super) mod labelled;
+pub(super) mod long;
+pub(super) mod named_fields;
+pub(super) mod value_changes;
+
 use std::io::{BufReader, Cursor, Read};
 
 use csv::ByteRecord;
@@ -8,16 +15,15 @@ use terminal::failure::Failure;
 
 use crate::log::{HEAD, cannot_read};
 
-use super::json::{self, Json};
-use super::kinds;
-use super::labelled::{self, Labelled};
 use super::layout::{Layout, is_stamped};
-use super::lines::LINE_REMEDY;
-use super::long::{self, Long};
 use super::options::ReadOptions;
-use super::row::Row;
 use super::text::Text;
-use super::value_changes::{self, ValueChanges};
+use super::text::lines::LINE_REMEDY;
+use super::text::row::Row;
+use json::Json;
+use labelled::Labelled;
+use long::Long;
+use value_changes::ValueChanges;
 
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 

@@ -6,16 +6,16 @@ use estimator_core::{Count, WrapError};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
-use super::absolute::{self, Extent, Found};
-use super::clock;
 use super::columns::Columns;
-use super::currents::{implausible_current, largest};
-use super::hint;
+use super::columns::currents::{implausible_current, largest};
+use super::encoder::absolute::{self, Extent, Found};
+use super::layout::hint;
 use super::options::ReadOptions;
 use super::parts::BLOCK;
 use super::records::Records;
-use super::resample::resampled_rows;
-use super::steps::Steps;
+use super::times::clock;
+use super::times::resample::resampled_rows;
+use super::times::steps::Steps;
 
 /// Properties of a log as a whole, from a pass over all of its rows.
 #[derive(Clone, Debug)]

@@ -1,5 +1,12 @@
 //! Rows of fields with separators.
 
+pub(super) mod fields;
+pub(super) mod lines;
+pub(super) mod prefixed;
+pub(super) mod row;
+pub(super) mod separator;
+pub(super) mod thousands;
+
 use std::io::BufRead;
 
 use csv::{ByteRecord, Reader, ReaderBuilder};
@@ -7,7 +14,7 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 use terminal::failure::Failure;
 
 use super::layout::Layout;
-use super::separator::{Lines, Separator};
+use separator::{Lines, Separator};
 
 /// Bytes and lines of a row from which a quote is taken as one that has no end.
 const QUOTED: usize = 256;

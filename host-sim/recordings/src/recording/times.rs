@@ -1,10 +1,18 @@
 //! Times of the rows while they are read.
 
+pub(super) mod bursts;
+pub(super) mod clock;
+pub(super) mod float_times;
+pub(super) mod moment;
+pub(super) mod own_times;
+pub(super) mod resample;
+pub(super) mod steps;
+
 use terminal::failure::Failure;
 
 use super::numbers::shown;
-use super::row::Row;
-use super::steps::{SLOWEST_HZ, to_digits};
+use super::text::row::Row;
+use steps::{SLOWEST_HZ, to_digits};
 
 /// Largest difference of the mean rate of the rows from that of --row-rate, relative.
 const SAME_RATE: f64 = 0.05;

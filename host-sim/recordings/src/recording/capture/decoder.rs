@@ -3,12 +3,12 @@
 use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
-use super::super::Recording;
-use super::super::numbers::{shown, shown_span};
-use super::super::row::Row;
-use super::super::times::back;
 use super::LINES;
 use super::levels::{Change, Kind, Levels};
+use crate::recording::Recording;
+use crate::recording::numbers::{shown, shown_span};
+use crate::recording::text::row::Row;
+use crate::recording::times::back;
 
 /// Largest number of rows of a recording: a day at 1 kHz.
 const MOST_ROWS: f64 = 1e8;

@@ -2,8 +2,8 @@
 
 use terminal::failure::Failure;
 
-use super::super::layout::UNKNOWN;
-use super::super::row::Row;
+use crate::recording::layout::UNKNOWN;
+use crate::recording::text::row::Row;
 
 /// The level of a line in a row; `None` if the row has none, as after the end of a capture.
 pub(super) fn level(row: &Row, called: &str, place: usize) -> Result<Option<bool>, Failure> {

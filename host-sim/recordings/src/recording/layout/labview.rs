@@ -2,8 +2,8 @@
 //!
 //! Source of the fields: NI, "Specification for the LabVIEW Measurement File (.lvm)".
 
-use super::super::separator::Separator;
 use super::Layout;
+use crate::recording::text::separator::Separator;
 
 /// The first field of such a file.
 const MARK: &str = "LabVIEW Measurement";

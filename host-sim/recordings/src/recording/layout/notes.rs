@@ -1,11 +1,11 @@
 //! Notes on parts of a text that are not read.
 
-use super::super::header::short;
+use super::header::short;
 use super::{Layout, Places};
 
 impl Layout {
     /// Notes on the lines and the columns that are not read.
-    pub(in super::super) fn notes(&self, places: &Places) -> Vec<String> {
+    pub(crate) fn notes(&self, places: &Places) -> Vec<String> {
         let mut notes = Vec::new();
         if let Some(line) = self.rows_above {
             notes.push(format!(

@@ -2,60 +2,60 @@
 
 use terminal::failure::Failure;
 
-use super::super::endings::Ending;
-use super::super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
-use super::super::header;
-use super::super::options::{Column, ReadOptions};
-use super::super::units::{Quantity, Unit};
 use super::Layout;
+use super::endings::Ending;
+use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
+use super::header;
+use crate::recording::options::units::{Quantity, Unit};
+use crate::recording::options::{Column, ReadOptions};
 
 /// A column that is read.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Place {
-    pub(in super::super) column: Column,
+pub(crate) struct Place {
+    pub(crate) column: Column,
     /// Its index in a row.
-    pub(in super::super) place: usize,
-    pub(in super::super) unit: &'static Unit,
+    pub(crate) place: usize,
+    pub(crate) unit: &'static Unit,
     /// For whole seconds, the column with the part of a second.
-    pub(in super::super) part: Option<Part>,
+    pub(crate) part: Option<Part>,
 }
 
 /// The column with the part of a second beside one of whole seconds.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Part {
+pub(crate) struct Part {
     /// Its index in a row.
-    pub(in super::super) place: usize,
-    pub(in super::super) unit: &'static Unit,
+    pub(crate) place: usize,
+    pub(crate) unit: &'static Unit,
 }
 
 impl Place {
     /// The indices in a row of what is read.
-    pub(in super::super) fn indices(self) -> impl Iterator<Item = usize> {
+    pub(crate) fn indices(self) -> impl Iterator<Item = usize> {
         std::iter::once(self.place).chain(self.part.map(|part| part.place))
     }
 }
 
 /// The columns that are read.
 #[derive(Debug)]
-pub(in super::super) struct Places {
+pub(crate) struct Places {
     /// The program that wrote the log, if it is known.
-    pub(in super::super) format: Option<&'static Format>,
+    pub(crate) format: Option<&'static Format>,
     columns: Vec<Place>,
     /// The column of time that --row-rate replaces.
-    pub(in super::super) replaced_time: Option<Place>,
+    pub(crate) replaced_time: Option<Place>,
     /// Optional columns that were found by their names and have no value in the first rows. They are not read.
-    pub(in super::super) without_value: Vec<(Column, usize)>,
+    pub(crate) without_value: Vec<(Column, usize)>,
     /// Whether a column was found because its name says what it is.
-    pub(in super::super) by_names: bool,
+    pub(crate) by_names: bool,
 }
 
 impl Places {
-    pub(in super::super) fn get(&self, column: Column) -> Option<Place> {
+    pub(crate) fn get(&self, column: Column) -> Option<Place> {
         let found = self.columns.iter().find(|place| place.column == column);
         found.copied()
     }
 
-    pub(in super::super) fn all(&self) -> &[Place] {
+    pub(crate) fn all(&self) -> &[Place] {
         &self.columns
     }
 
@@ -159,11 +159,7 @@ impl Layout {
     }
 
     /// The columns to read.
-    pub(in super::super) fn places(
-        &self,
-        options: &ReadOptions,
-        name: &str,
-    ) -> Result<Places, Failure> {
+    pub(crate) fn places(&self, options: &ReadOptions, name: &str) -> Result<Places, Failure> {
         let mut places = Places {
             format: self.format(options),
             columns: Vec::new(),

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::super::fields::is_without_value;
-use super::super::formats::Format;
-use super::super::moment::Moment;
-use super::super::options::{Column, Mapping, ReadOptions};
-use super::super::separator::{Separator, comment};
-use super::super::units::{Quantity, Unit};
 use super::Layout;
+use super::formats::Format;
 use super::words::{POSITIONS, TIMES, has};
+use crate::recording::options::units::{Quantity, Unit};
+use crate::recording::options::{Column, Mapping, ReadOptions};
+use crate::recording::text::fields::is_without_value;
+use crate::recording::text::separator::{Separator, comment};
+use crate::recording::times::moment::Moment;
 
 /// The first line that names a time and a position, in text or in a comment. A column that is called by its number has
 /// no name there.
@@ -178,7 +178,7 @@ fn end_with(separator: Separator, lines: &[&str]) -> bool {
 }
 
 /// A level that a logic analyser does not know.
-pub(in super::super) const UNKNOWN: &str = "X";
+pub(crate) const UNKNOWN: &str = "X";
 
 /// The fields of the rows of `layout` among `lines`.
 pub(super) fn rows(layout: &Layout, lines: &[&str]) -> Vec<Vec<String>> {
@@ -260,12 +260,12 @@ pub(super) fn number(field: &str, separator: Separator) -> Option<f64> {
 }
 
 /// Whether a field is a number with a fraction.
-pub(in super::super) fn is_fraction(field: &str, separator: Separator) -> bool {
+pub(crate) fn is_fraction(field: &str, separator: Separator) -> bool {
     number(field, separator).is_some_and(|number| number.fract() != 0.0)
 }
 
 /// Whether a field is a number or a time.
-pub(in super::super) fn is_number(field: &str, separator: Separator) -> bool {
+pub(crate) fn is_number(field: &str, separator: Separator) -> bool {
     number(field, separator).is_some() || Moment::parse(field).is_some()
 }
 

@@ -1,10 +1,10 @@
 //! Columns whose names say what they are: one is a time with its unit, one a position with its unit.
 
-use super::super::endings::Ending;
-use super::super::hint;
-use super::super::options::Column;
+use super::endings::Ending;
+use super::hint;
 use super::words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 use super::{Layout, Place, labview};
+use crate::recording::options::Column;
 
 /// The end of a name that counts anything: samples, errors, or an encoder's lines.
 const COUNT: &str = "count";

@@ -1,9 +1,9 @@
 //! A line below the header with the units of the columns: `[ms],[deg]`.
 
-use super::super::endings::{Ending, bracketed};
-use super::super::separator::{Separator, comment};
-use super::super::units::Quantity;
+use super::endings::{Ending, bracketed};
 use super::{Layout, is_content};
+use crate::recording::options::units::Quantity;
+use crate::recording::text::separator::{Separator, comment};
 
 /// Units of the columns, and the index of their line.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ fn inside(field: &str) -> Option<String> {
 
 impl Layout {
     /// What name and unit of the column at `place` say about the unit of `quantity`.
-    pub(in super::super) fn ending(&self, quantity: Quantity, place: usize) -> Ending<'_> {
+    pub(crate) fn ending(&self, quantity: Quantity, place: usize) -> Ending<'_> {
         match self.units.get(place).filter(|unit| !unit.is_empty()) {
             None => Ending::of(quantity, &self.names[place]),
             Some(unit) => quantity

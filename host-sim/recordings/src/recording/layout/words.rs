@@ -1,9 +1,8 @@
 //! Words in the names of columns.
 
 /// Parts of the names of positions, and of times.
-pub(in super::super) const POSITIONS: &[&str] =
-    &["counts", "encoder", "enc", "pos", "angle", "theta"];
-pub(in super::super) const TIMES: &[&str] = &["time", "stamp"];
+pub(crate) const POSITIONS: &[&str] = &["counts", "encoder", "enc", "pos", "angle", "theta"];
+pub(crate) const TIMES: &[&str] = &["time", "stamp"];
 
 /// Parts of the names of what is derived from a position.
 const DERIVED: &[&str] = &["vel", "speed", "omega", "acc", "dot"];
@@ -22,7 +21,7 @@ const DURATIONS: &[&str] = &[
 
 /// Whether a part of `name` is one of the `words`: a word of one or two letters is a whole part, one of three begins or
 /// ends a part, and a longer one, or one of several parts, is anywhere. A sequence is no encoder.
-pub(in super::super) fn has(name: &str, words: &[&str]) -> bool {
+pub(crate) fn has(name: &str, words: &[&str]) -> bool {
     let lower = name.to_lowercase();
     let parts = parts(name);
     let is_in = |word: &str| match word.len() {
@@ -55,7 +54,7 @@ fn parts(name: &str) -> Vec<String> {
 }
 
 /// Whether `name` is that of a rate of a position: omega, theta_dot, dtheta.
-pub(in super::super) fn is_derived(name: &str) -> bool {
+pub(crate) fn is_derived(name: &str) -> bool {
     let differential = |part: String| {
         let position = part.strip_prefix('d');
         position.is_some_and(|position| POSITIONS.contains(&position))
@@ -65,7 +64,7 @@ pub(in super::super) fn is_derived(name: &str) -> bool {
 
 /// Whether `name` is that of a position that is not measured at the shaft: a target, an error, a difference, an
 /// electrical angle.
-pub(in super::super) fn is_indirect(name: &str) -> bool {
+pub(crate) fn is_indirect(name: &str) -> bool {
     let desired = |part: String| {
         let position = part.strip_suffix('d');
         position.is_some_and(|position| POSITIONS.contains(&position))
@@ -74,7 +73,7 @@ pub(in super::super) fn is_indirect(name: &str) -> bool {
 }
 
 /// Whether `name` is that of a duration.
-pub(in super::super) fn is_duration(name: &str) -> bool {
+pub(crate) fn is_duration(name: &str) -> bool {
     has(name, DURATIONS)
 }
 

@@ -1,0 +1,318 @@
+//! Options that would read a log without a needed column.
+
+use super::endings::Ending;
+use super::formats::{Ambiguous, Format};
+use super::header::short;
+use super::{Keyed, Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
+use crate::recording::options::Column;
+use crate::recording::options::units::Quantity;
+use crate::recording::times::steps::to_digits;
+
+/// Characters of the longest name that a hint repeats; a longer one is called by its number.
+const LONGEST: usize = 80;
+
+/// Positions that a message lists.
+const LISTED: usize = 4;
+
+/// The unit of a position that has fractions, for an example.
+const ANGLE: &str = "rad";
+
+/// Parts of the names of what may be a position, and a time: more than say what they are.
+fn positions() -> Vec<&'static str> {
+    [POSITIONS, &["count"]].concat()
+}
+
+fn times() -> Vec<&'static str> {
+    [TIMES, &["sec", "ms"]].concat()
+}
+
+/// The option `--column`, with names and units.
+pub(crate) fn option(layout: &Layout) -> String {
+    if layout.names.is_empty() {
+        return "the file has no rows; write t,counts_large in its first line, and a row below for each sample".to_owned();
+    }
+    if layout.names.iter().all(String::is_empty) && layout.searched.is_some() {
+        return "remove lines above the header".to_owned();
+    }
+    if layout.names.iter().all(String::is_empty) {
+        return "the file has no names of columns; write t,counts_large in its first line"
+            .to_owned();
+    }
+    if !layout.has_header() {
+        let names = match layout.misfit {
+            Some(_) => "write one name for each column, or ",
+            None => "",
+        };
+        return match (layout.has_rate, layout.names.len()) {
+            (true, last) => format!(
+                "{names}give the number of the column, for example --column counts_large={}:counts",
+                last.min(2)
+            ),
+            (false, 1) => format!(
+                "{names}give the number of the column and the rate of the rows, for example --column \
+                 counts_large=1:counts --row-rate 1000"
+            ),
+            (false, _) => format!(
+                "{names}give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
+            ),
+        };
+    }
+    format!(
+        "name the columns and units, for example --column {}{}",
+        parts(layout),
+        only_indirect(layout).unwrap_or_default()
+    )
+}
+
+/// The value of `--column` for the time and the position, with the units that no name states.
+fn parts(layout: &Layout) -> String {
+    let time = || guess(layout, Column::T, &times(), "TIME");
+    let parts = [
+        (!layout.has_rate).then(time).flatten(),
+        guess(layout, Column::CountsLarge, &positions(), "POSITION"),
+    ];
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
+    let guessed: Vec<_> = parts.iter().filter_map(|part| part.guessed).collect();
+    let guessed = match guessed.as_slice() {
+        [] => String::new(),
+        [one] => format!(", where the unit {one} is a guess"),
+        all => format!(", where the units {} are guesses", all.join(" and ")),
+    };
+    let texts: Vec<_> = parts.into_iter().map(|part| part.text).collect();
+    format!("'{}'{guessed}", texts.join(","))
+}
+
+/// A part of `--column`, and its unit if neither the name nor the numbers tell it.
+struct Guess {
+    text: String,
+    guessed: Option<&'static str>,
+}
+
+/// The name of a position that is not measured at the shaft, where there is no other one.
+fn only_indirect(layout: &Layout) -> Option<String> {
+    let mut like = layout.names.iter().filter(|name| has(name, &positions()));
+    let first = like
+        .clone()
+        .find(|name| is_unfit(Column::CountsLarge, name))?;
+    (like.all(|name| is_unfit(Column::CountsLarge, name))).then(|| {
+        format!(
+            ": by its name '{}' is a rate, a target, an error, a difference or an electrical angle",
+            short(first)
+        )
+    })
+}
+
+/// Whether by its `name` a quantity is another one than `column`, whose words it has.
+fn is_unfit(column: Column, name: &str) -> bool {
+    match column {
+        Column::T => is_duration(name),
+        Column::CountsLarge => is_derived(name) || is_indirect(name),
+        _ => false,
+    }
+}
+
+/// What a log needs whose header has no column of time, by its names.
+pub(crate) fn without_time(layout: &Layout) -> &'static str {
+    let is_time = |(place, name): (usize, &String)| {
+        let could_be = has(name, &times())
+            || name.to_lowercase() == "t"
+            || matches!(layout.ending(Column::T.quantity(), place), Ending::Unit(_));
+        could_be && !is_duration(name)
+    };
+    let can_do_without = layout.has_header() && !layout.has_rate && !layout.names.is_empty();
+    match can_do_without && !layout.names.iter().enumerate().any(is_time) {
+        true => ", or give the rate of the rows with --row-rate HZ in the place of a time",
+        false => "",
+    }
+}
+
+/// The part of `--column` without a unit that names the column of the motor current, or the part for a
+/// column that probably has it; `None` if there is no such column.
+pub(crate) fn current(places: &Places, layout: &Layout) -> Option<String> {
+    let read = [Column::CurrentMeasured, Column::Current].map(|column| places.get(column));
+    if let Some(at) = read.into_iter().flatten().next() {
+        return Some(format!("{}={}", at.column.name(), theirs(layout, at.place)));
+    }
+    let words = ["current", "iq", "i_q", "amp", "torque", "effort"];
+    let part = guess(layout, Column::Current, &words, "")?.text;
+    (!part.starts_with("current=:")).then_some(part)
+}
+
+/// The part of `--column` for `column`, whose name probably has one of the `words`; `None` if the
+/// column has its own name.
+fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<Guess> {
+    let (ours, quantity) = (column.name(), column.quantity());
+    let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
+    let has_unit = |place: &usize| {
+        let is_fit = !is_unfit(column, &layout.names[*place]);
+        is_fit && matches!(layout.ending(quantity, *place), Ending::Unit(_))
+    };
+    let like = |name: &str| has(name, words) && !is_unfit(column, name);
+    let place = place(&|name| name == ours)
+        .or_else(|| place(&|name| name.to_lowercase() == ours))
+        .or_else(|| place(&like))
+        .or_else(|| (0..layout.names.len()).find(has_unit));
+    let Some(place) = place else {
+        return Some(Guess {
+            text: format!("{ours}={unknown}:{}", example(quantity)),
+            guessed: None,
+        });
+    };
+    let name = &layout.names[place];
+    let since_1970 = || {
+        let mut known = layout.since_1970.iter();
+        let known = known.find(|(at, _)| quantity == Quantity::Time && *at == place);
+        known.map(|(_, unit)| *unit)
+    };
+    let is_angle = quantity == Quantity::Position && layout.fractional.contains(&place);
+    // Of a name with another unit only its owner can say what the numbers are.
+    let is_silent = matches!(layout.ending(quantity, place), Ending::Nothing);
+    let known = known_unit(layout, quantity, place).or_else(since_1970);
+    let guessed = (is_silent && known.is_none()).then(|| match is_angle {
+        true => ANGLE,
+        false => example(quantity),
+    });
+    let unit = known.filter(|_| is_silent).or(guessed);
+    let unit = unit.map_or_else(String::new, |unit| format!(":{unit}"));
+    (name != ours).then(|| Guess {
+        text: format!("{ours}={}{unit}", theirs(layout, place)),
+        guessed,
+    })
+}
+
+/// The unit of a position that has the name of one of a known log.
+fn known_unit(layout: &Layout, quantity: Quantity, place: usize) -> Option<&'static str> {
+    let own = |name: &String| {
+        let keys = layout.keyed.iter().flat_map(|keyed| &keyed.keys);
+        let mut own = keys.filter_map(|key| name.strip_prefix(key.as_str())?.strip_prefix('.'));
+        own.next().unwrap_or(name).to_owned()
+    };
+    let names: Vec<_> = layout.names.iter().map(own).collect();
+    Format::position_unit(&names, place).filter(|_| quantity == Quantity::Position)
+}
+
+/// What an option calls the column at `place`: its name, or its number where the name is too long or
+/// needs more than quotes in a shell.
+pub(crate) fn theirs(layout: &Layout, place: usize) -> String {
+    let name = &layout.names[place];
+    let is_plain = |c: char| !c.is_control() && c != '\'' && c != '\u{fffd}';
+    match name.chars().count() <= LONGEST && name.chars().all(is_plain) {
+        true => name.clone(),
+        false => (place + 1).to_string(),
+    }
+}
+
+/// A reason for a missing column that is better than its name.
+pub(crate) fn reason(layout: &Layout, places: &Places) -> Option<String> {
+    let ambiguous = ambiguous(layout, places);
+    keyed(layout)
+        .or(ambiguous)
+        .or_else(|| captured(layout))
+        .or_else(|| levels(layout))
+        .or_else(|| barred(layout))
+        .or_else(|| untimed(layout))
+}
+
+/// Rows of several motors.
+fn keyed(layout: &Layout) -> Option<String> {
+    let Keyed { columns, keys } = layout.keyed.as_ref()?;
+    let mut listed: Vec<_> = keys.iter().take(LISTED).map(|key| short(key)).collect();
+    if keys.len() > LISTED {
+        listed.push("...".to_owned());
+    }
+    Some(format!(
+        "each row is of one of several motors: '{}' is {}; name the columns of one motor, for example --column {}",
+        short(&columns.join(".")),
+        listed.join("; "),
+        parts(layout)
+    ))
+}
+
+/// Rows without a time whose rate is stated.
+fn untimed(layout: &Layout) -> Option<String> {
+    let hz = to_digits(layout.row_rate_hz?, 6);
+    Some(format!(
+        "no column t: the rows have no time, and the header states {hz} rows a second; give this rate with \
+         --row-rate {hz}"
+    ))
+}
+
+/// Fields between bars.
+pub(crate) fn barred(layout: &Layout) -> Option<String> {
+    let is_barred = match layout.names.as_slice() {
+        [line] => line.contains('|'),
+        names => names.iter().any(|name| name == "|"),
+    };
+    is_barred
+        .then(|| "'|' separates no fields; write commas, semicolons, tabs or spaces".to_owned())
+}
+
+/// Several positions in a known log.
+fn ambiguous(layout: &Layout, places: &Places) -> Option<String> {
+    let found =
+        Ambiguous::of(&layout.names).filter(|_| places.get(Column::CountsLarge).is_none())?;
+    let names = found
+        .positions
+        .iter()
+        .map(|&place| short(&layout.names[place]));
+    let mut names: Vec<_> = names.take(LISTED).collect();
+    if found.positions.len() > LISTED {
+        names.push("...".to_owned());
+    }
+    let time = match places.get(Column::T) {
+        Some(_) => String::new(),
+        None => format!(
+            "t={}:{},",
+            theirs(layout, found.time.place),
+            found.time.unit
+        ),
+    };
+    Some(format!(
+        "{} positions fit a log of {}: {}; name one, for example --column '{time}counts_large={}:{}'",
+        found.positions.len(),
+        found.format.name,
+        names.join("; "),
+        theirs(layout, found.positions[0]),
+        found.unit
+    ))
+}
+
+/// Columns that a logic analyser calls by their numbers.
+fn captured(layout: &Layout) -> Option<String> {
+    let is_line = |name: &&String| {
+        let name = name.trim().to_lowercase();
+        let number = ["channel", "dio", "d"].into_iter();
+        let mut number = number.filter_map(|word| name.strip_prefix(word));
+        let is_number = |text: &str| text.trim().parse::<u8>().is_ok();
+        name == "logic" || number.any(is_number)
+    };
+    let lines = layout.names.iter().filter(is_line).count();
+    (lines >= 2).then(|| {
+        "the columns look like lines of a logic analyser; make a recording of an encoder's lines with \
+         host-sim decode"
+            .to_owned()
+    })
+}
+
+/// Columns that are 0 or 1 where no other one has the name of a position.
+fn levels(layout: &Layout) -> Option<String> {
+    let places = &layout.two_levels;
+    let mut others = (layout.names.iter().enumerate()).filter(|(place, _)| !places.contains(place));
+    if places.len() < 2 || others.any(|(_, name)| has(name, &positions())) {
+        return None;
+    }
+    let names = places.iter().map(|place| short(&layout.names[*place]));
+    Some(format!(
+        "the columns {} are 0 or 1 in the first rows; if they are the lines of an encoder, make a recording of \
+         them with host-sim decode",
+        names.collect::<Vec<_>>().join(", ")
+    ))
+}
+
+/// A unit for an example.
+pub(crate) const fn example(quantity: Quantity) -> &'static str {
+    quantity.units()[0].name()
+}
+
+#[cfg(test)]
+mod tests;
