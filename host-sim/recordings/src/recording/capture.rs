@@ -129,6 +129,7 @@ impl Capture {
                 column: Column::T,
                 theirs: theirs.clone(),
                 unit: None,
+                part: None,
             },
             (None, None, None) => {
                 return Err(Failure::Input(format!(
@@ -139,7 +140,9 @@ impl Capture {
                 )));
             }
         };
-        layout.mapped(&mapping, name).map(Clock::Column)
+        layout
+            .mapped(&mapping, &self.options, name)
+            .map(Clock::Column)
     }
 
     /// The places of the lines: those of the options, or the only two that are no time.

@@ -11,6 +11,7 @@ mod places;
 mod search;
 pub(super) mod sources;
 mod stating;
+mod twincat;
 mod unit_row;
 mod words;
 
@@ -115,7 +116,7 @@ impl Layout {
                 is_named,
             )
         };
-        if let Some(layout) = Self::labview(&lines) {
+        if let Some(layout) = Self::labview(&lines).or_else(|| Self::twincat(&lines)) {
             return Ok(Self {
                 fractional: fractional(&layout, &lines),
                 ..layout
@@ -244,10 +245,18 @@ impl Layout {
     }
 
     /// The column that a user names.
-    pub(super) fn mapped(&self, mapping: &Mapping, name: &str) -> Result<Place, Failure> {
-        header::check_one(mapping, self, name)?;
-        let place = self
-            .place(&mapping.theirs)
+    pub(super) fn mapped(
+        &self,
+        mapping: &Mapping,
+        options: &ReadOptions,
+        name: &str,
+    ) -> Result<Place, Failure> {
+        let beside = self.beside_position(mapping, options);
+        if beside.is_none() {
+            header::check_one(mapping, self, name)?;
+        }
+        let place = beside
+            .or_else(|| self.place(&mapping.theirs))
             .ok_or_else(|| header::unknown(mapping, self, name))?;
         let quantity = mapping.column.quantity();
         let unit = match (mapping.unit, self.ending(quantity, place)) {
@@ -263,7 +272,42 @@ impl Layout {
                 ));
             }
         };
-        Ok(self.at(mapping.column, place, unit))
+        let at = self.at(mapping.column, place, unit);
+        let Some((theirs, unit)) = &mapping.part else {
+            return Ok(at);
+        };
+        let part = Mapping {
+            theirs: theirs.clone(),
+            unit: Some(unit),
+            part: None,
+            ..*mapping
+        };
+        let part = self.mapped(&part, options, name)?;
+        Ok(Place {
+            part: Some(Part {
+                place: part.place,
+                unit: part.unit,
+            }),
+            ..at
+        })
+    }
+
+    /// Of several columns of time with one name the last one before the position: each signal of a log may have
+    /// its own times beside it. `None` for another column, and where the time has one place.
+    fn beside_position(&self, mapping: &Mapping, options: &ReadOptions) -> Option<usize> {
+        let is_time = mapping.column == Column::T && !mapping.is_number();
+        let position = options.mapping(Column::CountsLarge).filter(|_| is_time)?;
+        let end = self.place(&position.theirs)?;
+        let named = self.names[..end].iter().enumerate();
+        let mut named = named.filter(|(_, known)| **known == mapping.theirs);
+        let last = named.next_back()?.0;
+        (self
+            .names
+            .iter()
+            .filter(|known| **known == mapping.theirs)
+            .count()
+            > 1)
+        .then_some(last)
     }
 }
 

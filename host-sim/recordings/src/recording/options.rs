@@ -97,6 +97,8 @@ pub(super) struct Mapping {
     pub(super) theirs: String,
     /// The unit that the user gave.
     pub(super) unit: Option<&'static Unit>,
+    /// For whole seconds, name and unit of the column with the part of a second.
+    pub(super) part: Option<(String, &'static Unit)>,
 }
 
 impl Mapping {
@@ -184,6 +186,10 @@ impl ReadOptions {
                     "--column {part}: {name} is given twice; keep one"
                 )));
             }
+            let (theirs, second) = match column {
+                Column::T => split_second(theirs),
+                _ => (theirs, None),
+            };
             let (theirs, unit) = split_unit(column.quantity(), theirs.trim());
             if theirs.is_empty() {
                 return Err(Failure::Input(format!(
@@ -195,6 +201,7 @@ impl ReadOptions {
                 column,
                 theirs: theirs.to_owned(),
                 unit,
+                part: second.map(|(name, unit)| (name.to_owned(), unit)),
             });
         }
         Ok(())
@@ -285,6 +292,19 @@ fn split_unit(quantity: Quantity, text: &str) -> (&str, Option<&'static Unit>) {
         Some((name, Some(unit))) => (name, Some(unit)),
         _ => (text, None),
     }
+}
+
+/// Splits `1:s+2:ns` into the column of whole seconds and that of the part of a second, with its unit. Without
+/// these two units it is one name.
+fn split_second(text: &str) -> (&str, Option<(&str, &'static Unit)>) {
+    let split = || {
+        let (whole, part) = text.rsplit_once('+')?;
+        let (name, unit) = split_unit(Quantity::Time, part.trim());
+        let is_whole = split_unit(Quantity::Time, whole.trim()).1?.per_s() == 1.0;
+        let unit = unit.filter(|unit| is_whole && unit.per_s() > 1.0)?;
+        Some((whole, (name, unit)))
+    };
+    split().map_or((text, None), |(whole, part)| (whole, Some(part)))
 }
 
 fn example(column: Column) -> &'static str {

@@ -20,6 +20,9 @@ use separator::{Lines, Separator};
 const QUOTED: usize = 256;
 const QUOTED_LINES: usize = 20;
 
+/// A line that some programs write behind the last row.
+const END_OF_FILE: &[u8] = b"EOF";
+
 /// Reads rows with as many fields as there are columns.
 pub(super) struct Text<R> {
     reader: Reader<Lines<R>>,
@@ -60,12 +63,16 @@ impl<R: BufRead> Text<R> {
         record: &mut ByteRecord,
         name: &str,
     ) -> Result<Option<u64>, Failure> {
-        let read = self.reader.read_byte_record(record);
-        let read = read.map_err(|error| {
-            let line = error.position().map(|at| format!("line {}: ", at.line()));
-            let line = line.unwrap_or_default();
-            Failure::Input(format!("{name}: {line}cannot read: {error}"))
-        })?;
+        let mut is_end = true;
+        let mut read = false;
+        while is_end {
+            read = self.reader.read_byte_record(record).map_err(|error| {
+                let line = error.position().map(|at| format!("line {}: ", at.line()));
+                let line = line.unwrap_or_default();
+                Failure::Input(format!("{name}: {line}cannot read: {error}"))
+            })?;
+            is_end = read && self.columns > 1 && record.len() == 1 && record[0] == *END_OF_FILE;
+        }
         // The reader is at the begin of the next line.
         let line = read.then(|| self.reader.position().line() - 1);
         closed(record, line, name)?;

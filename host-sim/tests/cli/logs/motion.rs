@@ -51,6 +51,14 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("plotjuggler.csv", ""),
     ("labview.lvm", ""),
     (
+        "twincat-scope.csv",
+        "--column t=Time,counts_large=ActPos:counts",
+    ),
+    (
+        "ros2-echo.csv",
+        "--column t=1:s+2:ns,counts_large=5:rad,current=7:A",
+    ),
+    (
         "several-axes.csv",
         "--column|t=time:s,counts_large=axis 0 position:rev",
     ),

@@ -19,7 +19,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         "",
         &[
             "no names but 2 columns",
-            "--column t=1:s,counts_large=2:counts",
+            "--column t=1:s,counts_large=2:rad, where the units s and rad are guesses; read",
         ],
     ),
     (
@@ -28,10 +28,26 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         &[
             "line 1 has 4 names, and the rows have 3 columns",
             "write one name for each column, or give the numbers",
-            "--column t=1:s,counts_large=2:counts",
+            "--column t=1:s,counts_large=2:rad, where",
         ],
     ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
+    (
+        "ros2-echo.csv",
+        "",
+        &[
+            "no names but 7 columns",
+            "--column t=1:s+2:ns,counts_large=5:rad, where the units ns and rad are guesses",
+        ],
+    ),
+    (
+        "twincat-scope.csv",
+        "",
+        &[
+            "line 7: no column t; found: Time; TorqueCurrent; Time; ActPos, separated by tabs",
+            "--column 't=Time,counts_large=ActPos:counts', where the unit counts is a guess",
+        ],
+    ),
     (
         "not-a-number.csv",
         "",

@@ -3,6 +3,7 @@
 use super::endings::Ending;
 use super::formats::{Ambiguous, Format};
 use super::header::short;
+use super::search::number;
 use super::{Keyed, Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
 use crate::recording::options::Column;
 use crate::recording::options::units::Quantity;
@@ -53,7 +54,8 @@ pub(crate) fn option(layout: &Layout) -> String {
                  counts_large=1:counts --row-rate 1000"
             ),
             (false, _) => format!(
-                "{names}give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
+                "{names}give the numbers of the columns, for example --column {}",
+                numbered(layout)
             ),
         };
     }
@@ -73,13 +75,56 @@ fn parts(layout: &Layout) -> String {
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     let guessed: Vec<_> = parts.iter().filter_map(|part| part.guessed).collect();
-    let guessed = match guessed.as_slice() {
+    let guessed = guesses(&guessed);
+    let texts: Vec<_> = parts.into_iter().map(|part| part.text).collect();
+    format!("'{}'{guessed}", texts.join(","))
+}
+
+/// What to say of units that are guesses.
+fn guesses(units: &[&str]) -> String {
+    match units {
         [] => String::new(),
         [one] => format!(", where the unit {one} is a guess"),
         all => format!(", where the units {} are guesses", all.join(" and ")),
+    }
+}
+
+/// The value of `--column` for columns without names: by the first row, the time is a time since 1970 or the
+/// first number, and the position the next number.
+fn numbered(layout: &Layout) -> String {
+    let fields = layout.separator.split(&layout.first_row);
+    let is_number = |place: usize| {
+        let field = fields.get(place);
+        field.is_some_and(|field| number(field, layout.separator).is_some())
     };
-    let texts: Vec<_> = parts.into_iter().map(|part| part.text).collect();
-    format!("'{}'{guessed}", texts.join(","))
+    let mut guessed = Vec::new();
+    let mut of_unit = |unit| {
+        guessed.push(unit);
+        unit
+    };
+    let has_integer = |place| is_number(place) && !layout.fractional.contains(&place);
+    let (mut last, time) = match layout.since_1970.first() {
+        Some((place, "s")) if [*place, place + 1].into_iter().all(has_integer) => (
+            place + 1,
+            format!("{}:s+{}:{}", place + 1, place + 2, of_unit("ns")),
+        ),
+        Some((place, unit)) => (*place, format!("{}:{unit}", place + 1)),
+        None if is_number(0) => (0, format!("1:{}", of_unit("s"))),
+        // A date has no unit.
+        None => (0, "1".to_owned()),
+    };
+    last = (last + 1..layout.names.len())
+        .find(|place| is_number(*place))
+        .unwrap_or(last + 1);
+    let unit = match layout.fractional.contains(&last) {
+        true => of_unit(ANGLE),
+        false => of_unit(example(Quantity::Position)),
+    };
+    let position = last + 1;
+    format!(
+        "t={time},counts_large={position}:{unit}{}",
+        guesses(&guessed)
+    )
 }
 
 /// A part of `--column`, and its unit if neither the name nor the numbers tell it.

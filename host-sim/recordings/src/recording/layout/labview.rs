@@ -132,10 +132,31 @@ mod tests {
     #[test]
     fn each_signal_may_have_a_time_of_its_own() {
         let two = log("Multi", "counts", '.');
-        let error = read(&two, "t=X_Value,counts_large=Position").unwrap_err();
-        let said = "2 columns 'X_Value', of which --column names one for t: the numbers 1, 3";
+        for (columns, number) in [
+            ("t=X_Value,counts_large=Position", 1),
+            ("counts_large=2,t=X_Value", 1),
+            ("t=X_Value,counts_large=Current:counts", 3),
+        ] {
+            let text = two.replace("\t0.500000", "\t1");
+            let recording = read(&text, columns).unwrap();
+            assert_eq!(recording.t.len(), 400);
+            let said = format!("t from 'X_Value', column {number} (s), counts_large");
+            assert!(
+                recording.notes[0].starts_with(&said),
+                "{:?}",
+                recording.notes
+            );
+        }
+        check(
+            &read(&two, "t=X_Value,counts_large=Position").unwrap(),
+            "two",
+        );
+        check(&read(&two, "t=1,counts_large=Position").unwrap(), "first");
+        // No time stands before the position.
+        let behind = "p,time_ms,v,time_ms\n0,0,1,0\n1,1,1,1\n2,2,1,2\n";
+        let error = read(behind, "t=time_ms,counts_large=p").unwrap_err();
+        let said = "2 columns 'time_ms', of which --column names one for t: the numbers 2, 4";
         assert!(error.contains(said), "{error}");
-        check(&read(&two, "t=1,counts_large=Position").unwrap(), "two");
     }
 
     #[test]

@@ -169,7 +169,7 @@ impl Layout {
         };
         for column in Column::ALL {
             if let Some(mapping) = options.mapping(column) {
-                places.columns.push(self.mapped(mapping, name)?);
+                places.columns.push(self.mapped(mapping, options, name)?);
             } else if !column
                 .command()
                 .is_some_and(|command| options.mapping(command).is_some())

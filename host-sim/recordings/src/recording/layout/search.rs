@@ -229,9 +229,8 @@ const SINCE_1970: std::ops::Range<f64> = 1e9..4.1e9;
 pub(super) fn since_1970(layout: &Layout, lines: &[&str]) -> Vec<(usize, &'static str)> {
     let unit = |field: &String| {
         let number = number(field, layout.separator)?;
-        let units = &Quantity::Time.units()[1..];
         let fits = |unit: &&Unit| SINCE_1970.contains(&(number / unit.per_s()));
-        units.iter().find(fits).map(Unit::name)
+        Quantity::Time.units().iter().find(fits).map(Unit::name)
     };
     let first = rows(layout, lines).into_iter().next().unwrap_or_default();
     let fields = first.iter().enumerate();

@@ -39,7 +39,15 @@ pub(crate) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -
         };
         let (name, unit) = (place.column.name(), place.unit.name());
         let theirs = |place: usize| match layout.has_header() {
-            true => format!("'{}'", layout.names[place].escape_debug()),
+            true => {
+                let name = &layout.names[place];
+                let is_one = layout.names.iter().filter(|other| *other == name).count() == 1;
+                let number = match is_one {
+                    true => String::new(),
+                    false => format!(", column {}", place + 1),
+                };
+                format!("'{}'{number}", name.escape_debug())
+            }
             false => format!("column {}", place + 1),
         };
         let part = place.part.map_or_else(String::new, |part| {

@@ -50,6 +50,82 @@ fn time_since_1970_is_proposed_with_its_unit() {
         let error = read(&format!("time;position\n{first};1700000000123\n"), "").unwrap_err();
         let said = format!("--column 't=time:{unit},counts_large=position:counts'");
         assert!(error.contains(&said), "{first}: {error}");
+        // The numbers tell the unit.
+        let is_guess = error.contains("where the units s and counts are guesses");
+        assert_eq!(is_guess, first == "4200000000000", "{error}");
+    }
+}
+
+#[test]
+fn columns_without_names_are_proposed_by_their_first_numbers() {
+    for (rows, said) in [
+        (
+            "0,1\n1,2\n",
+            "t=1:s,counts_large=2:counts, where the units s and counts are guesses; read",
+        ),
+        (
+            "0.5,1.25\n0.75,2\n",
+            "t=1:s,counts_large=2:rad, where the units s and rad are guesses; read",
+        ),
+        (
+            "1700000000123,a,7\n1700000000124,a,8\n",
+            "t=1:ms,counts_large=3:counts, where the unit counts is a guess; read",
+        ),
+        (
+            "x,1700000000,999000000,7.5\nx,1700000001,0,8\n",
+            "t=2:s+3:ns,counts_large=4:rad, where the units ns and rad are guesses; read",
+        ),
+        (
+            "1700000000.5,7\n1700000000.6,8\n",
+            "t=1:s,counts_large=2:counts, where the unit counts is a guess; read",
+        ),
+        (
+            "12:00:00.1,7,3\n12:00:00.2,8,4\n",
+            "t=1,counts_large=2:counts, where the unit counts is a guess; read",
+        ),
+    ] {
+        let error = read(rows, "").unwrap_err();
+        assert!(
+            error.contains(&format!("for example --column {said}")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn whole_seconds_and_their_part_are_columns_of_any_name() {
+    let text = "1700000000,999000000,7\n1700000001,0,8\n1700000001,1000000,9\n";
+    let recording = read(text, "t=1:s+2:ns,counts_large=3:counts").unwrap();
+    let steps: Vec<_> = recording
+        .t
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    assert!(
+        steps.iter().all(|step| (step - 0.001).abs() < 1e-9),
+        "{steps:?}"
+    );
+    let said = "t from column 1 (s) and column 2 (ns), counts_large from column 3 (counts)";
+    assert!(
+        recording.notes[0].starts_with(said),
+        "{:?}",
+        recording.notes
+    );
+    let error = read(text, "t=1:s+9:ns,counts_large=3:counts").unwrap_err();
+    assert!(
+        error.contains("no column '9', which --column names for t"),
+        "{error}"
+    );
+    let error = read(text, "t=1:s+2:us,counts_large=3:counts").unwrap_err();
+    assert!(error.contains("line 1: column t: "), "{error}");
+    // Other units are no parts of a second, and the plus belongs to the name.
+    for (columns, said) in [
+        ("t=1:ms+2:ns,counts_large=3", "'ms+2' is no unit of t"),
+        ("t=1:s+2:s,counts_large=3", "'s+2' is no unit of t"),
+        ("t=1+2:ns,counts_large=3", "no column '1+2'"),
+    ] {
+        let error = read(text, columns).unwrap_err();
+        assert!(error.contains(said), "{columns}: {error}");
     }
 }
 
