@@ -8,9 +8,7 @@ use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name, short_name};
-use crate::recording::{
-    BoardColumns, ReadOptions, Recording, Survey, current_option, stated_counts_per_rev,
-};
+use crate::recording::{ReadOptions, Recording, Survey, current_option, stated_counts_per_rev};
 
 /// The parser of an option with counts per revolution.
 #[must_use]
@@ -77,10 +75,8 @@ pub struct RecordingOptions {
 /// A recording with the columns of the board and its device.
 #[derive(Clone, Debug)]
 pub struct Whole {
-    /// The recording. Its notes are those of the reader.
+    /// The recording, with the board's columns if it is from one. Its notes are those of the reader.
     pub recording: Recording,
-    /// The columns of the board, if the recording is from one.
-    pub board: BoardColumns,
     /// The device, with the counts per revolution that the recording states.
     pub device: Device,
     /// A line on the counts per revolution, if the recording states them.
@@ -127,12 +123,6 @@ impl ColumnOptions {
 }
 
 impl RecordingOptions {
-    /// Whether the recording has the rows of the file.
-    #[must_use]
-    pub fn keeps_rows(&self) -> bool {
-        self.resample.is_none()
-    }
-
     /// The device of a file with the counts per revolution of the recordings.
     ///
     /// # Errors
@@ -168,8 +158,18 @@ impl RecordingOptions {
     /// [`Failure::Input`] that names the file, its line and its column, or the option.
     pub fn read(&self, log: &Log, device: &Device) -> Result<Recording, Failure> {
         let options = self.columns.options(device)?;
-        let mut recording = Recording::parse_as(log.reader()?, log.name(), &options)?;
-        let unwrapped = recording.unwrap_counts(&options);
+        let recording = Recording::parse_as(log.reader()?, log.name(), &options)?;
+        self.finished(recording, &options, log)
+    }
+
+    /// `recording` as it was read from `log` with `options`, with unwrapped counts and at the rate that is wanted.
+    fn finished(
+        &self,
+        mut recording: Recording,
+        options: &ReadOptions,
+        log: &Log,
+    ) -> Result<Recording, Failure> {
+        let unwrapped = recording.unwrap_counts(options);
         recording.notes.extend(unwrapped);
         if let Some(hz) = self.resample {
             recording.notes.extend(recording.unevenness());
@@ -193,16 +193,12 @@ impl RecordingOptions {
     pub fn whole(&self, log: &Log, file: &DeviceFile) -> Result<Whole, Failure> {
         let Counted { device, lines, .. } =
             self.counted(file.loaded()?, std::slice::from_ref(log))?;
-        let recording = self.read(log, &device)?;
+        let options = self.columns.options(&device)?;
+        let recording = Recording::parse_with_board(log.reader()?, log.name(), &options)?;
+        let recording = self.finished(recording, &options, log)?;
         recording.check_times(log.name())?;
-        // Rows of another rate are not those of the board.
-        let board = match self.keeps_rows() {
-            true => BoardColumns::parse(log.reader()?, log.name())?,
-            false => BoardColumns::default(),
-        };
         Ok(Whole {
             recording,
-            board,
             device,
             stated: lines,
         })

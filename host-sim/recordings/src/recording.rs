@@ -23,7 +23,7 @@ mod write;
 use std::io::Read;
 use std::path::Path;
 
-pub use board::{BoardColumns, BoardReader};
+pub use board::BoardColumns;
 pub use capture::Capture;
 pub use columns::currents::implausible_current;
 pub use encoder::absolute::{after, boundary};
@@ -38,9 +38,10 @@ pub use survey::Survey;
 pub use times::steps::SLOWEST_HZ;
 
 use crate::log::Log;
+use board::Board;
 use columns::Columns;
 use columns::currents::largest;
-use layout::hint;
+use layout::{Layout, hint};
 use records::Records;
 use times::clock;
 
@@ -57,6 +58,8 @@ pub struct Recording {
     pub trace: Trace,
     /// The small motor's current from this tick to the next, A, as that of the trace.
     pub current_small: Option<Vec<f64>>,
+    /// The board's own estimates in these rows, where they were read too.
+    pub board: BoardColumns,
     /// Number of steps of `t` that differ from the period by more than a tenth of it.
     pub uneven_steps: usize,
     /// Number of rows that are left out because they have the time of the row before.
@@ -131,7 +134,19 @@ impl Recording {
     /// # Errors
     /// As [`Recording::read`].
     pub fn parse_as(input: impl Read, name: &str, options: &ReadOptions) -> Result<Self, Failure> {
-        Self::parse_first(input, name, options, f64::INFINITY)
+        Self::parse_rows(input, name, options, f64::INFINITY, |_| None)
+    }
+
+    /// As [`Recording::parse_as`], with the board's columns if the recording is one of a board.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn parse_with_board(
+        input: impl Read,
+        name: &str,
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
+        Self::parse_rows(input, name, options, f64::INFINITY, Board::of)
     }
 
     /// As [`Recording::parse_as`], up to the first row that is `seconds` after the first one, s.
@@ -144,9 +159,19 @@ impl Recording {
         options: &ReadOptions,
         seconds: f64,
     ) -> Result<Self, Failure> {
+        Self::parse_rows(input, name, options, seconds, |_| None)
+    }
+
+    fn parse_rows(
+        input: impl Read,
+        name: &str,
+        options: &ReadOptions,
+        seconds: f64,
+        board: impl FnOnce(&Layout) -> Option<Board>,
+    ) -> Result<Self, Failure> {
         let mut records = Records::open(input, name, options)?;
         let places = records.layout.places(options, name)?;
-        let mut columns = Columns::new(&places, options);
+        let mut columns = Columns::new(&places, options, board(&records.layout));
         while columns.elapsed() < seconds
             && let Some(row) = records.next()?
         {

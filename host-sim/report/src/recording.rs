@@ -12,9 +12,10 @@ use panel::{Curve, Panel, range};
 use super::canvas::{Anchor, Key, TITLE, WIDTH, figure, legend_height};
 use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
-use recordings::recording::{BoardColumns, Recording};
+use recordings::recording::Recording;
 use scoring::evaluation::Estimate;
 use scoring::score::HapticInterval;
+use simulation::trace::continued;
 
 /// Sizes, px.
 const LEFT: f64 = 70.0;
@@ -33,8 +34,6 @@ pub struct RecordingView<'a> {
     pub name: &'a str,
     /// The recording.
     pub recording: &'a Recording,
-    /// Columns that the board wrote into the recording.
-    pub board: &'a BoardColumns,
     /// Estimates of the large motor's velocity.
     pub estimates: &'a [Estimate],
     /// Counts per revolution of the large motor's and of the handle's encoder.
@@ -137,7 +136,7 @@ fn panels(view: &RecordingView) -> Vec<Panel> {
         add("error, rad/s", errors, Some(band));
     }
 
-    let board = view.board;
+    let board = &view.recording.board;
     let currents = [
         ("large motor", LARGE, trace.current.as_deref()),
         (
@@ -173,7 +172,7 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
             curve
         })
         .collect();
-    if let Some(own) = view.board.column("velocity_large") {
+    if let Some(own) = view.recording.board.column("velocity_large") {
         curves.push(Curve::new("estimate of the board", BOARD, own));
     }
     if curves.iter().all(|curve| !curve.sizes) {
@@ -183,25 +182,22 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
 }
 
 fn angle(name: &str, colour: RGBColor, counts: &[u32], per_rev: u32) -> Curve {
-    let mut moved = 0_i64;
-    let mut last = counts[0];
-    let angles = counts.iter().map(|&count| {
-        moved += i64::from(count.wrapping_sub(last) as i32);
-        last = count;
-        moved as f64 / f64::from(per_rev) * std::f64::consts::TAU
-    });
+    let continued = continued(counts);
+    let angles = (continued.iter())
+        .map(|count| (count - continued[0]) as f64 / f64::from(per_rev) * std::f64::consts::TAU);
     Curve::new(name, colour, &angles.collect::<Vec<_>>())
 }
 
 #[cfg(test)]
 mod tests {
+    use recordings::recording::ReadOptions;
+
     use super::*;
 
-    fn view<'a>(recording: &'a Recording, board: &'a BoardColumns) -> RecordingView<'a> {
+    fn view(recording: &Recording) -> RecordingView<'_> {
         RecordingView {
             name: "r.csv",
             recording,
-            board,
             estimates: &[],
             counts_per_rev: [4096, 20_000],
             interval: HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3),
@@ -214,9 +210,9 @@ mod tests {
 
     #[test]
     fn curves_end_at_gaps_and_counts_continue_over_their_wrap() {
-        let recording = Recording::parse(TEXT.as_bytes(), "r").unwrap();
-        let board = BoardColumns::parse(TEXT.as_bytes(), "r").unwrap();
-        let view = view(&recording, &board);
+        let options = ReadOptions::default();
+        let recording = Recording::parse_with_board(TEXT.as_bytes(), "r", &options).unwrap();
+        let view = view(&recording);
         assert_eq!(panel::segments(&view), [0..3, 3..5]);
         let angle = angle("", INK, &recording.trace.counts_large, 4096);
         let count = std::f64::consts::TAU / 4096.0;
@@ -234,8 +230,7 @@ mod tests {
     fn missing_signals_have_no_panel() {
         let text = "t,counts_large\n0,0\n0.001,1\n";
         let recording = Recording::parse(text.as_bytes(), "r").unwrap();
-        let board = BoardColumns::default();
-        let view = view(&recording, &board);
+        let view = view(&recording);
         let units: Vec<_> = panels(&view).iter().map(|panel| panel.unit).collect();
         assert_eq!(units, ["angle, rad"]);
         assert!(

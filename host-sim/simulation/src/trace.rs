@@ -38,6 +38,19 @@ pub struct Trace {
     pub true_damping: Option<Vec<f64>>,
 }
 
+/// Counts modulo 2^32 without their wraps: the first one between -2^31 and 2^31, the others by the changes.
+#[must_use]
+pub fn continued(counts: &[u32]) -> Vec<i64> {
+    let mut last = 0;
+    let mut at = 0;
+    let next = |&count: &u32| {
+        at += i64::from(count.wrapping_sub(last) as i32);
+        last = count;
+        at
+    };
+    counts.iter().map(next).collect()
+}
+
 impl Trace {
     /// Number of ticks.
     #[must_use]

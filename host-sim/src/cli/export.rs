@@ -11,7 +11,7 @@ use experiments::rates::EVERY_HZ;
 use experiments::real::wanted::in_range;
 use experiments::replay;
 use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
-use recordings::recording::{BoardColumns, Recording};
+use recordings::recording::Recording;
 use scoring::evaluation::Estimate;
 use simulation::device::Device;
 use simulation::trace::EDGE_CLOCK_HZ;
@@ -139,7 +139,6 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
     let log = Log::open(recording)?;
     let Whole {
         recording,
-        board,
         device,
         stated,
     } = options.read.whole(&log, &options.device)?;
@@ -153,7 +152,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
         &parameters,
         &|| (),
     )?;
-    let bytes = mcap(&recording, &board, &device, &replayed.estimates).map_err(Failure::Input)?;
+    let bytes = mcap(&recording, &device, &replayed.estimates).map_err(Failure::Input)?;
     write_whole(file, &bytes)?;
     let about = About {
         notes: recording.notes.clone(),
@@ -167,21 +166,16 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
 }
 
 #[cfg(feature = "mcap")]
-fn mcap(
-    recording: &Recording,
-    board: &BoardColumns,
-    device: &Device,
-    estimates: &[Estimate],
-) -> Result<Vec<u8>, String> {
+fn mcap(recording: &Recording, device: &Device, estimates: &[Estimate]) -> Result<Vec<u8>, String> {
     let names: Vec<_> = estimates
         .iter()
         .map(|estimate| estimate.estimator)
         .collect();
-    let rows = channels::rows(recording, board, device, estimates);
+    let rows = channels::rows(recording, device, estimates);
     channels::mcap(rows.iter().map(Vec::as_slice), &names)
 }
 
 #[cfg(not(feature = "mcap"))]
-fn mcap(_: &Recording, _: &BoardColumns, _: &Device, _: &[Estimate]) -> Result<Vec<u8>, String> {
+fn mcap(_: &Recording, _: &Device, _: &[Estimate]) -> Result<Vec<u8>, String> {
     Err("MCAP needs a build with its writer: cargo export instead of cargo sim export".to_owned())
 }

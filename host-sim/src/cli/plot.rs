@@ -64,7 +64,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     let path = log.name();
     let Whole {
         recording,
-        board,
         device,
         stated,
     } = options.read.whole(&log, &options.device)?;
@@ -96,7 +95,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     let svg = report::recording(&RecordingView {
         name: &name,
         recording: &recording,
-        board: &board,
         estimates: &replayed.estimates,
         counts_per_rev: [
             device.stages.large.counts_per_rev,

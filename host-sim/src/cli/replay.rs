@@ -12,7 +12,7 @@ use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::{BoardColumns, BoardReader, Parts, Survey};
+use recordings::recording::{Parts, Survey};
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
@@ -109,11 +109,6 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     }
     let mut passes = Passes {
         parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
-        // Rows of another rate are not those of the board.
-        board: match options.recording.keeps_rows() && BoardColumns::are_in(&log.head()?) {
-            true => Some(BoardReader::open(log.reader()?, log.name())?),
-            false => None,
-        },
         summary: BoardSummary::default(),
         bar: progress(
             rows.div_ceil(section_rows(rows)) * run.estimates.len(),
@@ -255,11 +250,9 @@ fn reference(
     }
 }
 
-/// The second pass over a log: its rows, and those with the board's own estimates. A recording without
-/// the board's column `sigma` is from another source: its further columns are not read.
+/// The second pass over a log.
 struct Passes<'a> {
     parts: Parts<'a>,
-    board: Option<BoardReader<'a>>,
     summary: BoardSummary,
     bar: ProgressBar,
     /// Rows of a section.
@@ -285,13 +278,11 @@ impl Passes<'_> {
             rows.trace.true_omega = Some(reference.omega[self.passed.clone()].to_vec());
         }
         let bar = &self.bar;
+        let board = std::mem::take(&mut rows.board);
         run.add(rows, &|| bar.inc(1))?;
-        if let Some(board) = &mut self.board {
-            let board = board.next(self.section)?;
-            match self.scores {
-                true => self.summary.learn(&board),
-                false => self.summary.add(&run.section.trace, &board),
-            }
+        match self.scores {
+            true => self.summary.learn(&board),
+            false => self.summary.add(&run.section.trace, &board),
         }
         Ok(true)
     }

@@ -1,5 +1,6 @@
 //! The command line as somebody types it.
 
+mod board_estimates;
 mod closed_loop;
 mod cluster;
 mod coarsen;

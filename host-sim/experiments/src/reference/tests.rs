@@ -63,10 +63,7 @@ fn synthetic(rows: usize, seed: u64) -> Recording {
     Recording {
         t,
         trace,
-        current_small: None,
-        uneven_steps: 0,
-        repeated_rows: 0,
-        notes: Vec::new(),
+        ..Recording::default()
     }
 }
 

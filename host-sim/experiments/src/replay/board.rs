@@ -62,3 +62,47 @@ impl BoardSummary {
         lines
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows at 1 kHz with a truth of `omega`, of which every `every`th estimate is three deviations off.
+    fn rows(rows: usize, omega: f64, every: usize) -> (Trace, BoardColumns) {
+        let mut text = String::from("t,counts_large,velocity_large,sigma_large\n");
+        for k in 0..rows {
+            let off = if k % every == 0 { 0.75 } else { 0.375 };
+            text += &format!("{},0,{},0.25\n", k as f64 * 1e-3, omega + off);
+        }
+        let trace = Trace {
+            rate_hz: 1000.0,
+            true_omega: Some(vec![omega; rows]),
+            ..Trace::default()
+        };
+        (trace, BoardColumns::parse(text.as_bytes(), "r").unwrap())
+    }
+
+    #[test]
+    fn share_of_good_estimates_is_that_of_all_parts_after_the_start() {
+        let mut summary = BoardSummary::default();
+        // The first 100 rows are the start: all of the first part, and 40 rows of the second.
+        let (trace, board) = rows(60, 1.0, 1);
+        summary.add(&trace, &board);
+        let (mut trace, board) = rows(140, -2.0, 4);
+        // The trace begins with rows of the part before.
+        let before = trace.true_omega.take().unwrap();
+        trace.true_omega = Some([vec![50.0; 30], before].concat());
+        summary.add(&trace, &board);
+        assert_eq!((summary.scored, summary.inside), (100, 75));
+        let lines = summary.lines(&Device::default());
+        assert_eq!(lines.len(), 1, "{lines:?}");
+        assert!(
+            lines[0].ends_with("within two sigma_large in 75.0 % of the samples"),
+            "{lines:?}"
+        );
+        // Of a recording without a truth or without standard deviations nothing is said.
+        let mut none = BoardSummary::default();
+        none.add(&Trace::default(), &board);
+        assert_eq!(none.lines(&Device::default()), [""; 0]);
+    }
+}

@@ -7,6 +7,7 @@ use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use super::Recording;
+use super::board::Board;
 use super::encoder::Encoder;
 use super::encoder::absolute;
 use super::layout::sources::sources;
@@ -53,6 +54,8 @@ pub(super) struct Columns<'a> {
     edges: Vec<Option<EdgeStamp>>,
     stamps: Stamps,
     true_omega: Vec<f64>,
+    /// The board's columns, if they are read too.
+    board: Option<Board>,
     /// Number of rows left out, and line of the first.
     left_out: usize,
     first_left_out: u64,
@@ -61,7 +64,7 @@ pub(super) struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    pub(super) fn new(places: &Places, options: &'a ReadOptions) -> Self {
+    pub(super) fn new(places: &Places, options: &'a ReadOptions, board: Option<Board>) -> Self {
         Self {
             options,
             places: Column::ALL.map(|column| places.get(column)),
@@ -82,6 +85,7 @@ impl<'a> Columns<'a> {
             edges: Vec::new(),
             stamps: Stamps::default(),
             true_omega: Vec::new(),
+            board,
             left_out: 0,
             first_left_out: 0,
             cut: None,
@@ -102,12 +106,13 @@ impl<'a> Columns<'a> {
 
     /// Adds a row.
     pub(super) fn take(&mut self, row: &Row) -> Result<(), Failure> {
-        if row.is_cut_at(
-            self.places
-                .iter()
-                .flatten()
-                .flat_map(|place| place.indices()),
-        ) {
+        let read = self
+            .places
+            .iter()
+            .flatten()
+            .flat_map(|place| place.indices());
+        let of_board = self.board.iter().flat_map(Board::indices);
+        if row.is_cut_at(read.chain(of_board)) {
             self.cut = Some(row.line);
             return Ok(());
         }
@@ -167,7 +172,10 @@ impl<'a> Columns<'a> {
         if let Some(at) = self.place(Column::TrueOmega) {
             self.true_omega.push(scaled(row, at, 1.0)?);
         }
-        Ok(())
+        match &mut self.board {
+            Some(board) => board.take(row),
+            None => Ok(()),
+        }
     }
 
     /// Whether a row has its time and no position, and is one of other signals: in some logs each row has the signals that
@@ -307,7 +315,9 @@ impl<'a> Columns<'a> {
         let current_small = front(&mut self.current_small.values, rows);
         let edges = front(&mut self.edges, rows);
         let true_omega = front(&mut self.true_omega, rows);
+        let board = self.board.as_mut().map(|board| board.drain(rows));
         Recording {
+            board: board.unwrap_or_default(),
             t: front(&mut self.t, rows),
             uneven_steps: 0,
             repeated_rows: 0,

@@ -6,6 +6,7 @@ use estimator_core::Count;
 use terminal::failure::Failure;
 
 use super::Recording;
+use super::board::Board;
 use super::columns::Columns;
 use super::encoder::absolute;
 use super::options::ReadOptions;
@@ -48,7 +49,8 @@ impl<'a> Parts<'a> {
         survey: &'a Survey,
     ) -> Result<Self, Failure> {
         let records = Records::open(input, name, options)?;
-        let mut columns = Columns::new(&records.layout.places(options, name)?, options);
+        let board = Board::in_parts(&records.layout, survey.resample);
+        let mut columns = Columns::new(&records.layout.places(options, name)?, options, board);
         let empty = columns.drain(0, survey.columns.rate_hz);
         Ok(Self {
             records,

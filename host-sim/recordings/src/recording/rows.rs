@@ -16,6 +16,7 @@ impl Recording {
         add(&mut trace.edges, &mut added.edges);
         add(&mut trace.periods, &mut added.periods);
         add(&mut trace.true_omega, &mut added.true_omega);
+        self.board.append(other.board);
     }
 
     /// Removes the first `rows` rows, or all if there are fewer, and returns them.
@@ -25,6 +26,7 @@ impl Recording {
         Self {
             t: self.t.drain(..rows).collect(),
             current_small: front(&mut self.current_small, rows),
+            board: self.board.split_front(rows),
             uneven_steps: 0,
             repeated_rows: 0,
             notes: Vec::new(),

@@ -6,6 +6,7 @@ use estimator_core::{Count, WrapError};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
+use super::board::Board;
 use super::columns::Columns;
 use super::columns::currents::{implausible_current, largest};
 use super::encoder::absolute::{self, Extent, Found};
@@ -94,7 +95,8 @@ impl Survey {
         let moduli = per_rev.map(absolute::moduli);
         let mut records = Records::open(input, name, options)?;
         let places = records.layout.places(options, name)?;
-        let mut columns = Columns::new(&places, options);
+        let board = Board::in_parts(&records.layout, resample);
+        let mut columns = Columns::new(&places, options, board);
         let mut steps = Steps::default();
         let mut seen = [Seen::nothing(); 2];
         let mut ends: Option<[f64; 2]> = None;

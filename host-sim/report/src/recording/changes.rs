@@ -35,7 +35,7 @@ pub(super) fn states(
 
 /// Times in the window at which state or cause change, s, and the new state.
 pub(super) fn changes(view: &RecordingView) -> Vec<(f64, String)> {
-    let (t, board) = (&view.recording.t, view.board);
+    let (t, board) = (&view.recording.t, &view.recording.board);
     let Some(state) = board.column("state") else {
         return Vec::new();
     };

@@ -3,11 +3,14 @@
 use simulation::trace::EdgeStamp;
 use terminal::failure::Failure;
 
-use crate::recording::Recording;
 use crate::recording::numbers::shown_span;
+use crate::recording::{BoardColumns, Recording};
 
 /// Largest number of new rows for each row of the recording.
 const MOST_ROWS: f64 = 100.0;
+
+/// Rounding of the product of a time and a rate, periods.
+const ROUNDING: f64 = 1e-6;
 
 impl Recording {
     /// Replaces the rows by rows at a constant rate, from the first row on.
@@ -76,6 +79,8 @@ impl Recording {
             };
             at.iter().map(value).collect()
         });
+        // Rows at other times are not those of the board.
+        self.board = BoardColumns::default();
         trace.rate_hz = rate_hz;
         trace.periods = None;
         self.uneven_steps = 0;
@@ -95,7 +100,8 @@ pub(crate) fn resampled_rows(
     name: &str,
 ) -> Result<usize, Failure> {
     let duration_s = last - first;
-    let wanted = (duration_s * rate_hz).floor() + 1.0;
+    // Times have rounding errors: a step that lacks less than this part of a period is whole.
+    let wanted = (duration_s * rate_hz + ROUNDING).floor() + 1.0;
     let seconds = shown_span(duration_s);
     if !(rate_hz >= super::steps::SLOWEST_HZ && wanted >= 2.0) {
         return Err(Failure::Input(format!(
