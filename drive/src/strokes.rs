@@ -1,14 +1,16 @@
 //! Observations of a board: at rest, and in the strokes with which the scene `excite` begins.
 
 use drivers::link::{Frame, Index, Measured, Message};
-use haptic_control::SceneKind;
+use haptic_control::{Excite, SceneKind};
 use terminal::failure::Failure;
 
 use crate::board::{Answer, Board};
 use crate::session::{self, Plan};
 
-/// Length of the strokes, in which a free handle stays near its start, s.
+/// Time of the strokes that is observed, in which a free handle stays near its start, s.
 const SECONDS: f64 = 3.8;
+/// What follows the strokes is for a clamped handle.
+const _: () = assert!(SECONDS < Excite::STROKES_SECONDS && Excite::STROKES_SECONDS < SECONDS + 0.1);
 
 /// What a board sent.
 #[derive(Clone, Debug, Default)]

@@ -79,6 +79,21 @@ impl Excite {
         }
     };
 
+    /// Duration of the strokes, s.
+    ///
+    /// ```
+    /// assert_eq!(haptic_control::Excite::STROKES_SECONDS, 3.888);
+    /// ```
+    pub const STROKES_SECONDS: f64 = {
+        let strokes = SECTIONS[0];
+        let (mut pass_ms, mut i) = (0, 0);
+        while i < strokes.len() {
+            pass_ms += strokes[i].steps as u32 * strokes[i].hold_ms as u32;
+            i += 1;
+        }
+        (PASSES as u32 * pass_ms) as f64 / 1000.0
+    };
+
     /// The excitation of `device` by a controller that runs at `rate`.
     ///
     /// # Errors
