@@ -98,13 +98,13 @@ pub(crate) fn observed(
     sink: &mut dyn FnMut(Message),
 ) -> Result<(), Failure> {
     interrupt::take();
-    let arms = plan.keeps_alive;
-    if arms {
-        arm(board, answer)?;
-    }
-    follow(board, answer, plan, sink)?;
-    if arms {
-        board.disarm()?;
+    if plan.keeps_alive {
+        let followed = arm(board, answer).and_then(|()| follow(board, answer, plan, sink));
+        // After an error too: what the caller does next may take its time.
+        let disarmed = board.disarm();
+        followed.and(disarmed.map(drop))?;
+    } else {
+        follow(board, answer, plan, sink)?;
     }
     if interrupt::came() {
         return Err(Failure::Check("interrupted".to_owned()));
