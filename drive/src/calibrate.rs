@@ -36,24 +36,45 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     board.disarm()?;
     let before = settings::present(board)?;
     announce(board);
-    let mut seen = measured(board, &answer)?;
-    let present = with_zeros(&seen, &before);
-    if present != before {
+    let mut undo = Vec::new();
+    if let Err(failure) = adjust(board, &answer, &before, &mut undo) {
+        // Whatever has failed, an interrupt too: an order to store would keep settings of a calibration that has no end.
+        let _ = settings::change(board, &undo);
+        return Err(failure);
+    }
+    if store {
+        return settings::store(board);
+    }
+    board.note("until the next reset; cargo drive settings --store keeps them");
+    Ok(())
+}
+
+/// Measures both currents, with other zeros where those of `before` turn the handle out of its bounds, prints a line
+/// for each, and sets zero and gain. Adds what undoes a change to `undo` ahead of it.
+///
+/// # Errors
+/// As [`run`].
+fn adjust(
+    board: &mut Board,
+    answer: &Answer,
+    before: &Settings,
+    undo: &mut Vec<Assignment>,
+) -> Result<(), Failure> {
+    let mut seen = measured(board, answer)?;
+    let present = with_zeros(&seen, before);
+    if present != *before {
         board.note(format_args!(
             "the offsets turned the handle out of its bounds: the strokes are repeated without most of them"
         ));
+        undo.extend(zeros(before));
         settings::change(board, &zeros(&present))?;
-        let repeated = measured(board, &answer);
-        if repeated.is_err() {
-            settings::change(board, &zeros(&before))?;
-        }
-        seen = repeated?;
+        seen = measured(board, answer)?;
     }
     let mut assignments = Vec::new();
     let mut lines: Vec<Line> = Vec::new();
     for channel in &CHANNELS {
         let found =
-            Fit::of(&seen, channel).and_then(|fit| calibrated(fit, channel, &present, &before));
+            Fit::of(&seen, channel).and_then(|fit| calibrated(fit, channel, &present, before));
         let result = found.map(|(text, new)| {
             assignments.extend(new);
             text
@@ -64,20 +85,17 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     }
     let wrong = failed(&lines);
     if wrong > 0 {
-        if present != before {
-            settings::change(board, &zeros(&before))?;
-        }
         return Err(Failure::Check(format!(
             "calibrate: {wrong} of {} motors failed; no setting was changed",
             lines.len()
         )));
     }
-    settings::change(board, &assignments)?;
-    if store {
-        return settings::store(board);
-    }
-    board.note("until the next reset; cargo drive settings --store keeps them");
-    Ok(())
+    undo.clear();
+    undo.extend(assignments.iter().map(|it| Assignment {
+        setting: it.setting,
+        value: before.get(it.setting),
+    }));
+    settings::change(board, &assignments)
 }
 
 /// The strokes, after the monitors have learned their zeros.

@@ -1,6 +1,6 @@
 //! Measured currents of a board: calibration of its DACs, and their check in the bring-up.
 
-use std::process::Output;
+use std::process::{Command as Process, Output, Stdio};
 
 use drivers::link::Hello;
 use drivers::{Command, Setting, Settings};
@@ -11,6 +11,18 @@ use crate::scripted::{Board, Script};
 
 /// Offset and slope of both motors.
 const MEASURES: [(f32, f32); 2] = [(0.012, 0.96), (-0.006, 1.05)];
+
+const EXCITE: Command = Command::Request(Request::Select(SceneKind::Excite.number()));
+/// The zeros of a board at the begin, and those of its offsets in whole codes:
+/// 2040 - 0.012 / 6 / 1.1 2047 = 2036.3, and 2048 + 0.006 / 1.5 2047 = 2056.2.
+const ZEROS: [Command; 2] = [
+    set(Setting::ZeroLarge, 2040.0),
+    set(Setting::ZeroSmall, 2048.0),
+];
+const OTHER_ZEROS: [Command; 2] = [
+    set(Setting::ZeroLarge, 2036.0),
+    set(Setting::ZeroSmall, 2056.0),
+];
 
 /// What a board does with these measured currents, whose settings are not the default ones.
 fn script(measures: [(f32, f32); 2]) -> Script {
@@ -30,15 +42,14 @@ fn board(measures: [(f32, f32); 2]) -> Board {
 /// The commands without those that measure, and with each repetition left out.
 fn afterwards(commands: &[Command]) -> Vec<Command> {
     let commands = deduplicated(sorted(commands).0);
-    let excite = Command::Request(Request::Select(SceneKind::Excite.number()));
     let [DISARM, ARM, select, DISARM, rest @ ..] = &commands[..] else {
         panic!("{commands:?}");
     };
-    assert_eq!(*select, excite);
+    assert_eq!(*select, EXCITE);
     rest.to_vec()
 }
 
-fn set(setting: Setting, value: f32) -> Command {
+const fn set(setting: Setting, value: f32) -> Command {
     Command::Set {
         setting: setting.number(),
         value,
@@ -168,19 +179,9 @@ fn short_strokes_are_repeated_once_with_other_zeros_which_a_failure_undoes() {
     assert!(said.contains("the strokes are repeated"), "{said}");
     assert!(said.contains("2 of 2 motors failed"), "{said}");
     let after = afterwards(&commands);
-    // Whole codes: 2040 - 0.012 / 6 / 1.1 2047 = 2036.3, and 2048 + 0.006 / 1.5 2047 = 2056.2.
-    let other = [
-        set(Setting::ZeroLarge, 2036.0),
-        set(Setting::ZeroSmall, 2056.0),
-    ];
-    let original = [
-        set(Setting::ZeroLarge, 2040.0),
-        set(Setting::ZeroSmall, 2048.0),
-    ];
-    let excite = Command::Request(Request::Select(SceneKind::Excite.number()));
     assert_eq!(
         after,
-        [&other[..], &[ARM, excite, DISARM], &original].concat()
+        [&OTHER_ZEROS[..], &[ARM, EXCITE, DISARM], &ZEROS].concat()
     );
 }
 
@@ -197,13 +198,48 @@ fn stop_in_the_repeated_strokes_undoes_the_other_zeros() {
     let [_, said] = text(&output);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("the board stopped"), "{said}");
-    let sets = sets(commands);
-    assert_eq!(sets.len(), 4, "{sets:?}");
-    let original = [
-        set(Setting::ZeroLarge, 2040.0),
-        set(Setting::ZeroSmall, 2048.0),
-    ];
-    assert_eq!(sets[2..], original);
+    let [set_large, set_small, arm, excite, disarm, undone @ ..] = &afterwards(&commands)[..]
+    else {
+        panic!("{commands:?}");
+    };
+    assert_eq!([*set_large, *set_small], OTHER_ZEROS);
+    assert_eq!((*arm, *excite), (ARM, EXCITE));
+    // Before the settings, which take their time.
+    assert_eq!(*disarm, DISARM);
+    assert_eq!(undone, ZEROS);
+}
+
+/// Nobody reads the lines of the repeated strokes, or a signal comes in them.
+#[cfg(unix)]
+#[test]
+fn calibrate_that_ends_in_any_other_manner_undoes_the_other_zeros() {
+    for is_interrupted in [false, true] {
+        let board = Board::new(Script {
+            strokes_end_after: Some(60),
+            ..script(MEASURES)
+        });
+        let (reader, writer) = std::io::pipe().unwrap();
+        let reader = Some(reader).filter(|_| is_interrupted);
+        let mut tool = board.tool(&["calibrate"]);
+        let tool = tool.stdout(writer).stderr(Stdio::piped()).spawn().unwrap();
+        if is_interrupted {
+            board.wait_for(OTHER_ZEROS[1]);
+            board.wait_for(EXCITE);
+            let id = tool.id().to_string();
+            let killed = Process::new("kill").args(["-INT", &id]).status().unwrap();
+            assert!(killed.success());
+        }
+        let output = tool.wait_with_output().unwrap();
+        drop(reader);
+        let [_, said] = text(&output);
+        assert!(!output.status.success(), "{said}");
+        assert!(
+            is_interrupted || said.contains("nobody reads the lines"),
+            "{said}"
+        );
+        let sets = sets(board.commands());
+        assert_eq!(sets[sets.len().saturating_sub(2)..], ZEROS, "{said}");
+    }
 }
 
 #[test]
