@@ -14,20 +14,17 @@ use terminal::output::{note, print_to_reader};
 use crate::clock::Limit;
 use crate::named::explained;
 use crate::port::Port;
+use crate::questions::{AGAIN, Questions};
 use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refusal, silent};
 use crate::sent::ATTEMPTS;
 use crate::watch::is_enabled;
-
-/// Time after which a question is asked again.
-const AGAIN: Duration = Duration::from_millis(200);
 
 /// A connected board. After [`Board::disarm_at_the_end`] a drop disarms the board.
 pub(crate) struct Board {
     port: Port,
     parser: Parser,
     messages: VecDeque<Message>,
-    /// Questions that have no answer yet.
-    asked: u32,
+    asked: Questions,
     /// Longest wait for an answer, and longest silence.
     patience: Duration,
     /// Whether the end has to disarm.
@@ -55,7 +52,7 @@ impl Board {
             port,
             parser: Parser::default(),
             messages: VecDeque::new(),
-            asked: 0,
+            asked: Questions::new(patience),
             patience,
             disarms: false,
             listener: None,
@@ -99,9 +96,9 @@ impl Board {
         self.patience
     }
 
-    /// Number of the questions that have no answer yet.
-    pub(crate) const fn asked(&self) -> u32 {
-        self.asked
+    /// Number of the questions whose answers may still come.
+    pub(crate) fn asked(&mut self) -> u32 {
+        self.asked.number(Instant::now())
     }
 
     /// Sends a command.
@@ -109,7 +106,9 @@ impl Board {
     /// # Errors
     /// [`Failure::Input`] if the connection is lost.
     pub(crate) fn send(&mut self, command: Command) -> Result<(), Failure> {
-        self.asked += u32::from(command == Command::Identify);
+        if command == Command::Identify {
+            self.asked.ask(Instant::now());
+        }
         let sent = self.port.write(&encode(command));
         sent.map_err(|error| self.lost(&error))
     }
@@ -122,7 +121,7 @@ impl Board {
         loop {
             if let Some(message) = self.messages.pop_front() {
                 if let Message::Hello(_) = message {
-                    self.asked = self.asked.saturating_sub(1);
+                    self.asked.answer();
                 }
                 return Ok(Some(message));
             }
@@ -173,7 +172,7 @@ impl Board {
         let mut identity: Option<Hello> = None;
         // Answers to questions from before those commands come first. If one is lost, the question is
         // asked again.
-        let mut older = self.asked;
+        let mut older = self.asked();
         let answer = self.ask(Command::Identify, |message| {
             match message {
                 Message::Hello(_) if older > 0 => older -= 1,

@@ -1,24 +1,19 @@
 //! A session: what a command does from the first message to the end.
 
-use std::mem;
-use std::time::Instant;
-
 use drivers::Command;
-use drivers::link::{Frame, Message, Rejected};
+use drivers::link::{Frame, Message};
 use haptic_control::{Mode, Request, SceneKind};
 use terminal::failure::Failure;
-use terminal::output::{note, print_to_reader};
+use terminal::output::note;
 
 use crate::board::{Answer, Board};
-use crate::clock::{Clock, Limit};
+use crate::follow::follow;
 use crate::interrupt;
-use crate::pace::Pace;
 use crate::record::Recorder;
-use crate::refusal::{NOISE, UNVERIFIED};
-use crate::sent::{ATTEMPTS, Order, Sent};
+use crate::refusal::UNVERIFIED;
 use crate::settings;
 use crate::timed::Change;
-use crate::watch::{Every, line, state};
+use crate::watch::state;
 
 /// Earliest time at which a board is armed, ms of its time: current monitors of the amplifiers need it until
 /// they are near zero.
@@ -197,168 +192,7 @@ fn written(followed: Result<(), Failure>, recorder: Option<Recorder>) -> Result<
     followed.and(written)
 }
 
-fn is_ready(mode: Option<Mode>) -> bool {
+/// Whether a scene can be selected or runs.
+pub(crate) fn is_ready(mode: Option<Mode>) -> bool {
     matches!(mode, Some(Mode::Armed | Mode::Running))
-}
-
-/// Follows the plan to its end, and hands what comes to `sink`.
-fn follow(
-    board: &mut Board,
-    Answer { hello, rejected }: &Answer,
-    plan: Plan,
-    sink: &mut dyn FnMut(Message),
-) -> Result<(), Failure> {
-    let Plan {
-        scene,
-        mut changes,
-        seconds,
-        every,
-        recorder: _,
-        has_stdout,
-        keeps_alive,
-    } = plan;
-    let mut sent = Sent::new(*rejected, scene, board.asked());
-    if let Some(scene) = scene.filter(|_| !interrupt::came()) {
-        let select = Command::Request(Request::Select(scene.number()));
-        order(board, &mut sent, format!("scene {scene}"), select, 1)?;
-    }
-    let mut starts = scene.is_some_and(|scene| scene != SceneKind::Off);
-    let patience = board.patience();
-    let mut limit = Limit::new(patience, hello.rate, Instant::now());
-    // The next one last.
-    changes.reverse();
-    let mut every = every.map(|seconds| Every::new(seconds, hello.rate));
-    let mut pace = Pace::new(hello.rate, Instant::now());
-    let mut clock = Clock::new(hello.rate);
-    let (mut heard, mut mode, mut tick) = (Instant::now(), None, None);
-    // It comes after its frame: a line has that of the frame before.
-    let (mut supply, mut is_identity) = (None, false);
-    while !interrupt::came() {
-        if keeps_alive && pace.is_due(Instant::now(), tick) {
-            board.send(Command::Request(Request::KeepAlive))?;
-        }
-        let Some(message) = board.next(pace.next().min(heard + patience))? else {
-            if heard.elapsed() >= patience {
-                return Err(board.silent());
-            }
-            continue;
-        };
-        sink(message);
-        // The counts after an identity are those of its answer.
-        let is_answer = mem::replace(&mut is_identity, matches!(message, Message::Hello(_)));
-        if let Message::Rejected(now) = message
-            && keeps_alive
-        {
-            match is_answer {
-                true => again(board, &mut sent, &now)?,
-                false => sent.report(&now)?,
-            }
-        }
-        if let Message::Supply(now) = message {
-            supply = Some(now.volts);
-        }
-        let Message::Frame(frame) = message else {
-            continue;
-        };
-        (heard, tick) = (Instant::now(), Some(frame.tick));
-        if keeps_alive {
-            stopped(mode, &frame)?;
-        }
-        mode = Mode::from_code(frame.state);
-        if every.as_mut().is_some_and(|every| every.selects(&frame)) {
-            let text = line(&frame, supply, hello);
-            if !is_read(&text, has_stdout)? {
-                note("nobody reads the lines any more: the session ends");
-                break;
-            }
-        }
-        // The select command takes its time, and may be lost.
-        starts &= mode != Some(Mode::Running);
-        if starts && limit.is_over(heard, frame.tick) {
-            let state = state(&frame);
-            return Err(Failure::Check(format!(
-                "the scene does not start: {state}; check the line, then run again"
-            )));
-        }
-        if starts {
-            continue;
-        }
-        let elapsed = clock.elapsed(frame.tick);
-        while let Some((_, change)) = changes.pop_if(|(at, _)| *at <= elapsed) {
-            order(board, &mut sent, change.to_string(), change.command(), 1)?;
-        }
-        if seconds.is_some_and(|seconds| elapsed >= seconds) {
-            break;
-        }
-    }
-    Ok(())
-}
-
-/// Sends a command for the first or a later time, and a question whose answer has the counts of what the board rejected.
-fn order(
-    board: &mut Board,
-    sent: &mut Sent,
-    name: String,
-    command: Command,
-    times: u32,
-) -> Result<(), Failure> {
-    board.send(command)?;
-    board.send(Command::Identify)?;
-    sent.add(Order {
-        name,
-        command,
-        times,
-    });
-    Ok(())
-}
-
-/// Takes the counts of an answer, and sends a command again that may have been damaged. The frames tell whether a scene
-/// was selected.
-///
-/// # Errors
-/// [`Failure::Check`] if the board has refused a command, [`Failure::Input`] if the connection is lost.
-fn again(board: &mut Board, sent: &mut Sent, now: &Rejected) -> Result<(), Failure> {
-    match sent.answer(now)? {
-        None
-        | Some(Order {
-            command: Command::Request(_),
-            ..
-        }) => Ok(()),
-        Some(Order { name, times, .. }) if times >= ATTEMPTS => {
-            board.note(format_args!(
-                "{name}: sent {times} times, and each time bytes that are no command reached the board; {NOISE}"
-            ));
-            Ok(())
-        }
-        Some(Order {
-            name,
-            command,
-            times,
-        }) => order(board, sent, name, command, times + 1),
-    }
-}
-
-/// Shows a line of text: beside a recording on standard output, as a note. Whether somebody reads on.
-fn is_read(text: &str, has_stdout: bool) -> Result<bool, Failure> {
-    if has_stdout {
-        note(text);
-        return Ok(true);
-    }
-    print_to_reader(format!("{text}\n").as_bytes())
-}
-
-/// Whether the board has stopped by itself since the frame before.
-///
-/// # Errors
-/// [`Failure::Check`] with state and cause.
-fn stopped(before: Option<Mode>, frame: &Frame) -> Result<(), Failure> {
-    let now = Mode::from_code(frame.state);
-    let ended = before == Some(Mode::Running) && now == Some(Mode::Armed);
-    if is_ready(now) && !ended {
-        return Ok(());
-    }
-    Err(Failure::Check(format!(
-        "the board stopped: {}; remove the cause, then run again",
-        state(frame)
-    )))
 }

@@ -5,7 +5,7 @@ use std::process::Output;
 use drivers::{Command, Settings};
 use haptic_control::{Mode, Request};
 
-use crate::scripted::{Board, Script, error};
+use crate::scripted::{Board, Part, Script, error};
 
 pub(super) const ARM: Command = Command::Request(Request::Arm);
 pub(super) const DISARM: Command = Command::Request(Request::Disarm);
@@ -267,7 +267,7 @@ fn change_that_may_be_damaged_is_sent_again() {
     for (damages, sent) in [(1, 2), (9, 4)] {
         let board = || {
             Board::new(Script {
-                damages,
+                damages: (1, damages),
                 ..Script::default()
             })
         };
@@ -281,6 +281,35 @@ fn change_that_may_be_damaged_is_sent_again() {
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         assert_eq!(number(&commands), sent);
         assert_eq!(said(&output).contains(SAID), damages == 9, "{output:?}");
+    }
+}
+
+/// The question after the first change is the third one, after that of the connection and that after the scene.
+#[test]
+fn change_after_a_lost_answer_is_sent_again_if_it_may_be_damaged() {
+    for part in [Part::Identity, Part::Counts] {
+        let board = Board::new(Script {
+            loses: Some((3, part)),
+            damages: (2, 2),
+            ..Script::default()
+        });
+        let (output, commands) = board.run(&[
+            "select",
+            "wall",
+            "--tune",
+            "stiffness=0.2@0.1",
+            "--tune",
+            "damping=0.001@0.2",
+            "--seconds",
+            "5",
+        ]);
+        assert_eq!(output.status.code(), Some(0), "{part:?}: {output:?}");
+        let damping = |command: &&Command| matches!(command, Command::Tune { parameter: 2, .. });
+        assert_eq!(
+            commands.iter().filter(damping).count(),
+            2,
+            "{part:?}: {commands:?}"
+        );
     }
 }
 

@@ -12,7 +12,7 @@ use drivers::link::{
 use drivers::{Command, Parser, Saved, Setting, Settings};
 use haptic_control::{Mode, Request, Stop};
 
-use crate::scripted::Script;
+use crate::scripted::{Part, Script};
 
 /// Frames that the board sends at a time.
 const BURST: u32 = 10;
@@ -62,6 +62,8 @@ struct Player<'a> {
     last: Option<u32>,
     /// Frame at which the command `select` came.
     selected: Option<u32>,
+    /// Questions for the identity so far.
+    questions: u32,
     /// Commands with a value so far.
     values: u32,
     /// Commands `select` so far.
@@ -93,6 +95,7 @@ impl<'a> Player<'a> {
             asked: None,
             last: None,
             selected: None,
+            questions: 0,
             values: 0,
             selections: 0,
             quiet_until: None,
@@ -121,8 +124,14 @@ impl<'a> Player<'a> {
         match command {
             Command::Identify => {
                 self.asked.get_or_insert(self.seq);
-                let hello = self.message(self.hello().into());
-                let answer = [hello, self.message(self.rejected.into())].concat();
+                self.questions += 1;
+                let parts = [
+                    (Part::Identity, self.hello().into()),
+                    (Part::Counts, self.rejected.into()),
+                ];
+                let sent = (parts.into_iter())
+                    .filter(|(part, _)| self.script.loses != Some((self.questions, *part)));
+                let answer: Vec<u8> = sent.flat_map(|(_, it)| self.message(it)).collect();
                 let now = match self.script.answers_late {
                     true => std::mem::replace(&mut self.late, answer),
                     false => answer,
@@ -137,7 +146,8 @@ impl<'a> Player<'a> {
             }
             Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
                 self.values += 1;
-                match self.values <= self.script.damages {
+                let (first, last) = self.script.damages;
+                match (first..=last).contains(&self.values) {
                     true => self.rejected.garbage += 12,
                     false => self.rejected.out_of_bounds += u32::from(self.script.refuses),
                 }

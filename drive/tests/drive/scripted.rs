@@ -13,6 +13,13 @@ use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
 use crate::player::play;
 
+/// A message of the answer to the question for the identity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Identity,
+    Counts,
+}
+
 /// What the board does.
 #[derive(Clone)]
 pub(super) struct Script {
@@ -44,6 +51,8 @@ pub(super) struct Script {
     pub(super) lost: Option<(u32, u32)>,
     /// Whether each answer is sent at the next question only.
     pub(super) answers_late: bool,
+    /// Message that is lost of the answer to the question of this number, from 1.
+    pub(super) loses: Option<(u32, Part)>,
     /// Whether the board refuses values as out of bounds.
     pub(super) refuses: bool,
     /// Offset, A, and slope of the measured currents of both motors over their commands, by an image with
@@ -60,8 +69,8 @@ pub(super) struct Script {
     pub(super) settings: Settings,
     /// Whether the board takes the command `disarm`.
     pub(super) disarms: bool,
-    /// So many of the first commands with a value arrive damaged.
-    pub(super) damages: u32,
+    /// Commands with a value that arrive damaged: first and last, by their number from 1.
+    pub(super) damages: (u32, u32),
     /// Whether noise reaches the command channel, which the board tells every 100 frames.
     pub(super) garbles: bool,
 }
@@ -93,6 +102,7 @@ impl Default for Script {
             starts_again: None,
             lost: None,
             answers_late: false,
+            loses: None,
             refuses: false,
             measures: None,
             turns: None,
@@ -100,7 +110,7 @@ impl Default for Script {
             strokes_end_after: None,
             settings: Settings::COMMISSIONED,
             disarms: true,
-            damages: 0,
+            damages: (0, 0),
             garbles: false,
         }
     }
