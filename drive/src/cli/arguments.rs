@@ -110,7 +110,8 @@ pub(super) enum Action {
   cargo drive settings current-scale=0.5
   cargo drive settings zero-large=2051.5 gain-large=1.01 --store")]
     Settings {
-        /// New values, in the setting's unit; they act at once
+        /// New values, in the setting's unit; they act at once, but for estimator, which acts after a start of the
+        /// board that has it stored
         #[arg(value_name = "NAME=VALUE", value_parser = assignment)]
         assignments: Vec<Assignment>,
         /// Store the settings in the board's flash; the amplifiers have to be disabled
