@@ -185,6 +185,8 @@ fn replaces(later: &Command, earlier: &Command) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::slice::from_ref;
+
     use super::*;
 
     const NONE: Rejected = Rejected {
@@ -268,8 +270,8 @@ mod tests {
         let mut one_by_one = sent(0, &[first.clone(), other.clone(), second.clone()], at);
         assert_eq!(one_by_one.answer(&noise(3)).unwrap(), [], "it is replaced");
         // The answer to the first one may be lost: the noise may be that of the second one.
-        assert_eq!(one_by_one.answer(&noise(3)).unwrap(), [other.clone()]);
-        assert_eq!(one_by_one.answer(&noise(3)).unwrap(), [second.clone()]);
+        assert_eq!(one_by_one.answer(&noise(3)).unwrap(), from_ref(&other));
+        assert_eq!(one_by_one.answer(&noise(3)).unwrap(), from_ref(&second));
         assert_eq!(one_by_one.answer(&noise(4)).unwrap(), [], "no command");
         // A question after all of them.
         let mut at_once = sent(0, &[], at);
@@ -287,7 +289,7 @@ mod tests {
     fn question_without_an_answer_is_asked_again_with_all_commands_since() {
         let at = Instant::now();
         let (first, second) = (tune(1, 0.1), tune(1, 0.2));
-        let mut sent = sent(0, std::slice::from_ref(&first), at);
+        let mut sent = sent(0, from_ref(&first), at);
         assert!(!sent.asks(at + AGAIN - ms(1)));
         sent.add(second.clone());
         assert!(sent.asks(at + AGAIN - ms(1)));

@@ -219,7 +219,7 @@ fn calibrate_that_ends_in_any_other_manner_undoes_the_other_zeros() {
             ..script(MEASURES)
         });
         let (reader, writer) = std::io::pipe().unwrap();
-        let reader = Some(reader).filter(|_| is_interrupted);
+        let reader = is_interrupted.then_some(reader);
         let mut tool = board.tool(&["calibrate"]);
         let tool = tool.stdout(writer).stderr(Stdio::piped()).spawn().unwrap();
         if is_interrupted {
