@@ -64,6 +64,13 @@ struct Commander {
     heard: Instant,
 }
 
+impl Commander {
+    /// Whether the page was not heard for too long.
+    fn is_stale(&self, now: Instant) -> bool {
+        now.saturating_duration_since(self.heard) > STALE
+    }
+}
+
 /// What the source and the pages share.
 pub(crate) struct Hub {
     /// Random; a page that is served has it.
@@ -155,7 +162,7 @@ impl Hub {
     pub(crate) fn join(&self, page: u64) -> bool {
         let mut commander = locked(&self.commander);
         let is_free =
-            commander.is_none_or(|other| other.page == page || other.heard.elapsed() > STALE);
+            commander.is_none_or(|other| other.page == page || other.is_stale(Instant::now()));
         if is_free {
             let heard = Instant::now();
             *commander = Some(Commander { page, heard });
@@ -214,7 +221,7 @@ impl Hub {
 
     /// Whether the page that commands was not heard for so long that its hand has to let go.
     pub(crate) fn is_abandoned(&self) -> bool {
-        locked(&self.commander).is_none_or(|now| now.heard.elapsed() > STALE)
+        locked(&self.commander).is_none_or(|now| now.is_stale(Instant::now()))
     }
 
     /// Keeps a finished recording for downloads, instead of the one before. That one is written to files if no
@@ -296,6 +303,15 @@ mod tests {
             panic!("an event");
         };
         assert_eq!(next.as_str(), (2 * EVENTS).to_string());
+    }
+
+    #[test]
+    fn page_that_was_not_heard_for_two_seconds_is_stale() {
+        let heard = Instant::now();
+        let commander = Commander { page: 1, heard };
+        let two = Duration::from_secs(2);
+        assert!(!commander.is_stale(heard) && !commander.is_stale(heard + two));
+        assert!(commander.is_stale(heard + two + Duration::from_millis(1)));
     }
 
     #[test]
