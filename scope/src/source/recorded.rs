@@ -104,44 +104,72 @@ impl Source for Recorded {
     }
 
     fn run(self: Box<Self>, hub: Arc<Hub>, orders: Receiver<Order>) -> Result<(), Failure> {
-        let mut player = Player {
+        let mut playback = Playback::new(self.rows, Instant::now());
+        while !hub.stops() {
+            playback.step(&hub, &orders, Instant::now());
+            std::thread::sleep(STEP);
+        }
+        Ok(())
+    }
+}
+
+/// A recording that is played for the pages of a hub.
+struct Playback {
+    rows: Vec<Vec<f64>>,
+    player: Player,
+    was_seen: bool,
+    /// The step before.
+    last: Instant,
+    /// The status before.
+    told: Instant,
+}
+
+impl Playback {
+    fn new(rows: Vec<Vec<f64>>, now: Instant) -> Self {
+        let player = Player {
             next: 0,
-            at: self.rows[0][0],
+            at: rows[0][0],
             plays: false,
             speed: 1.0,
             batch: Batch::new(),
         };
-        let (mut last, mut told) = (Instant::now(), Instant::now());
-        let mut was_seen = false;
-        while !hub.stops() {
-            // The playback begins with the first page, and again with the first one after the others have gone.
-            if was_seen != hub.is_seen() {
-                was_seen = !was_seen;
-                if was_seen {
-                    player.seek(self.rows[0][0], &self.rows);
-                }
-                player.plays = was_seen;
-                last = Instant::now();
-            }
-            while let Ok(order) = orders.try_recv() {
-                player.order(&order, &self.rows);
-            }
-            player.advance(last.elapsed().as_secs_f64(), &self.rows);
-            last = Instant::now();
-            if let Some(bytes) = player.batch.due() {
-                hub.tell(Event::Rows(bytes));
-            }
-            if told.elapsed() >= STATUS {
-                told = Instant::now();
-                hub.status(json!({
-                    "t": player.at,
-                    "plays": player.plays,
-                    "speed": player.speed,
-                }));
-            }
-            std::thread::sleep(STEP);
+        Self {
+            rows,
+            player,
+            was_seen: false,
+            last: now,
+            told: now,
         }
-        Ok(())
+    }
+
+    /// Follows the orders, and plays what is due.
+    fn step(&mut self, hub: &Hub, orders: &Receiver<Order>, now: Instant) {
+        let Self { rows, player, .. } = self;
+        // The playback begins with the first page, and again with the first one after the others have gone.
+        if self.was_seen != hub.is_seen() {
+            self.was_seen = !self.was_seen;
+            if self.was_seen {
+                player.seek(rows[0][0], rows);
+            }
+            player.plays = self.was_seen;
+            self.last = now;
+        }
+        while let Ok(order) = orders.try_recv() {
+            player.order(&order, rows);
+        }
+        player.advance((now - self.last).as_secs_f64(), rows);
+        self.last = now;
+        if let Some(bytes) = player.batch.due() {
+            hub.tell(Event::Rows(bytes));
+        }
+        if now - self.told >= STATUS {
+            self.told = now;
+            hub.status(json!({
+                "t": player.at,
+                "plays": player.plays,
+                "speed": player.speed,
+            }));
+        }
     }
 }
 
@@ -222,7 +250,6 @@ impl Player {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::rows as batch_rows;
 
     #[test]
     fn log_of_an_uneven_clock_has_a_channel_without_values_for_what_needs_an_even_one() {
@@ -281,33 +308,23 @@ mod tests {
     /// A recording on which a source has waited for some time without a page.
     #[test]
     fn playback_begins_with_the_first_page() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/logs/uneven.csv");
-        let (options, file) = (RecordingOptions::default(), DeviceFile::default());
-        let recorded = Recorded::read(Path::new(path), &options, &file).expect("a recording");
-        let begin = recorded.rows[0][0];
+        let rows: Vec<Vec<f64>> = (0..100).map(|k| vec![f64::from(k) * 0.01]).collect();
         let (hub, orders) = Hub::new("token".to_owned(), Value::Null);
-        let of_source = Arc::clone(&hub);
-        let source = std::thread::spawn(move || Box::new(recorded).run(of_source, orders));
-        std::thread::sleep(20 * STEP);
+        let (mut now, second) = (Instant::now(), Duration::from_secs(1));
+        let mut playback = Playback::new(rows, now);
+        let mut step = |after: Duration| {
+            now += after;
+            playback.step(&hub, &orders, now);
+            (playback.player.next, playback.player.plays)
+        };
+        assert_eq!(step(100 * second), (0, false));
         for _ in 0..2 {
-            let mut events = hub.listen();
             let page = hub.enter();
-            // A playback that has ended sends nothing.
-            let mut first = None;
-            for _ in 0..1000 {
-                if let Ok(Event::Rows(bytes)) = events.try_recv() {
-                    first = Some(batch_rows(&bytes).1[0][0]);
-                    break;
-                }
-                std::thread::sleep(STEP);
-            }
-            assert_eq!(first, Some(begin));
+            assert_eq!(step(100 * second), (1, true), "the row at the begin");
+            assert_eq!(step(second / 4), (26, true), "a row each 10 ms");
             hub.leave(page);
-            // The source sees that the page has gone.
-            std::thread::sleep(20 * STEP);
+            assert_eq!(step(100 * second), (26, false));
         }
-        hub.stop.store(true, std::sync::atomic::Ordering::Relaxed);
-        assert_eq!(source.join().expect("a source"), Ok(()));
     }
 
     #[test]
