@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::thread;
+use std::sync::mpsc::Receiver;
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use clap::Parser;
@@ -17,6 +18,7 @@ use terminal::output::{note, print_bytes};
 use terminal::wording::WIDTH;
 
 use crate::hub::{Event, Hub};
+use crate::order::Order;
 use crate::server::Server;
 use crate::source::{Emulated, RealBoard, Recorded, Source};
 use crate::stream::{Stream, mcap_file};
@@ -120,27 +122,48 @@ fn serve(
     if opens {
         open(&url);
     }
-    let of_source = Arc::clone(&hub);
-    let named = thread::Builder::new().name("source".to_owned());
-    let source = named.spawn(move || {
-        let ended = source.run(Arc::clone(&of_source), orders);
-        if let Err(failure) = &ended {
-            of_source.ended(failure);
-        }
-        // A source that has failed ends the server.
-        of_source.stop.store(true, Ordering::Relaxed);
-        ended
-    });
-    let source = source.map_err(|error| Failure::Check(format!("a thread: {error}")))?;
+    let source = begin(source, Arc::clone(&hub), orders)?;
     let served = server.serve(&hub);
     hub.stop.store(true, Ordering::Relaxed);
-    let ended = source
-        .join()
-        .unwrap_or_else(|_| Err(Failure::Check("the source panicked".to_owned())));
+    let ended = source.join().unwrap_or_else(|_| Err(panicked()));
     hub.tell(Event::End);
     let streamed = stream.map_or(Ok(()), Stream::finish);
     let rescued = hub.rescue();
     ended.and(served).and(streamed).and(rescued)
+}
+
+/// Runs a source on a thread of its own. The end of the source ends the server.
+fn begin(
+    source: Box<dyn Source>,
+    hub: Arc<Hub>,
+    orders: Receiver<Order>,
+) -> Result<JoinHandle<Result<(), Failure>>, Failure> {
+    let named = thread::Builder::new().name("source".to_owned());
+    let spawned = named.spawn(move || {
+        let end = SourceEnd(Arc::clone(&hub));
+        let ended = source.run(hub, orders);
+        if let Err(failure) = &ended {
+            end.0.ended(failure);
+        }
+        ended
+    });
+    spawned.map_err(|error| Failure::Check(format!("a thread: {error}")))
+}
+
+fn panicked() -> Failure {
+    Failure::Check("the source panicked".to_owned())
+}
+
+/// The end of a source, by a panic too: it is told and ends the server.
+struct SourceEnd(Arc<Hub>);
+
+impl Drop for SourceEnd {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.ended(&panicked());
+        }
+        self.0.stop.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Opens the page in a browser, if the system has a program for it.
@@ -159,5 +182,41 @@ fn open(url: &str) {
     if let Ok(mut child) = command.spawn() {
         // Its end is waited for, so that it leaves no process behind.
         thread::spawn(move || drop(child.wait()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use super::*;
+
+    struct Panics;
+
+    impl Source for Panics {
+        fn facts(&self) -> Value {
+            Value::Null
+        }
+
+        fn run(self: Box<Self>, _: Arc<Hub>, _: Receiver<Order>) -> Result<(), Failure> {
+            panic!("as a test");
+        }
+    }
+
+    #[test]
+    fn source_that_panics_is_told_and_ends_the_server() {
+        let (hub, orders) = Hub::new("token".to_owned(), Value::Null);
+        let mut events = hub.listen();
+        let source = begin(Box::new(Panics), Arc::clone(&hub), orders).expect("a thread");
+        assert!(source.join().is_err());
+        assert!(hub.stops());
+        let Ok(Event::Text(told)) = events.try_recv() else {
+            panic!("an event");
+        };
+        let told: Value = serde_json::from_str(&told).expect("JSON");
+        assert_eq!(
+            (&told["type"], &told["why"]),
+            (&"ended".into(), &"the source panicked".into())
+        );
     }
 }
