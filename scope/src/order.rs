@@ -8,6 +8,7 @@ use firmware_app::large;
 use firmware_app::scene::BOUNDS;
 use haptic_control::{Request, SceneKind};
 use serde::Deserialize;
+use tuned::DEVICE_FINGERPRINT;
 use virtual_board::fault::Fault;
 
 use crate::bench::guided;
@@ -91,15 +92,13 @@ impl Order {
                 let known = scene.facts().parameters.get(usize::from(*parameter));
                 let known =
                     known.ok_or_else(|| format!("scene {scene} has no parameter {parameter}"))?;
-                let range = known.quantity.range(&BOUNDS);
-                if range.contains(value) {
-                    return Ok(());
+                match value.is_finite() {
+                    true => Ok(()),
+                    false => Err(format!(
+                        "{scene} {} {value}: out of bounds; give a number",
+                        known.name
+                    )),
                 }
-                let (least, most) = (range.start(), range.end());
-                let (name, unit) = (known.name, known.quantity.unit());
-                Err(format!(
-                    "{scene} {name} {value}: out of bounds; give {least} to {most} {unit}"
-                ))
             }
             Self::Estimator { number } if usize::from(*number) >= large::NAMES.len() => Err(
                 format!("estimator {number}: give 0 to {}", large::NAMES.len() - 1),
@@ -129,8 +128,15 @@ impl Order {
     /// # Errors
     /// One line with what the image has.
     pub(crate) fn fits(&self, hello: Option<&Hello>) -> Result<(), String> {
+        let is_other = hello.is_some_and(|hello| hello.device != DEVICE_FINGERPRINT.0);
         let hello = || hello.ok_or("the board has not told its identity yet");
         match *self {
+            // An image for another device has other bounds, and checks them itself.
+            Self::Tune {
+                scene,
+                parameter,
+                value,
+            } if !is_other => within(scene, parameter, value),
             Self::Estimator { number } => chosen(number, hello()?),
             // The board stores every number.
             Self::Set { setting, value } if setting == Setting::Estimator.number() => {
@@ -172,6 +178,23 @@ impl Order {
             _ => return None,
         })
     }
+}
+
+/// Checks a value of a parameter against the bounds of an image for the device of this build.
+fn within(number: u8, parameter: u8, value: f32) -> Result<(), String> {
+    let scene = scene(number)?;
+    let Some(known) = scene.facts().parameters.get(usize::from(parameter)) else {
+        return Ok(());
+    };
+    let range = known.quantity.range(&BOUNDS);
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let (least, most) = (range.start(), range.end());
+    let (name, unit) = (known.name, known.quantity.unit());
+    Err(format!(
+        "{scene} {name} {value}: out of bounds; give {least} to {most} {unit}"
+    ))
 }
 
 fn scene(number: u8) -> Result<SceneKind, String> {
@@ -246,12 +269,27 @@ pub(crate) mod tests {
             parameter: 1,
             value,
         };
-        assert_eq!(tune(BOUNDS.stiffness).check(), Ok(()));
-        for value in [BOUNDS.stiffness + 0.01, -0.01, f32::NAN, f32::INFINITY] {
-            assert!(
-                tune(value).check().unwrap_err().contains("out of bounds"),
-                "{value}"
-            );
+        let checked = |value, hello: &Hello| {
+            let order = tune(value);
+            order.check().and_then(|()| order.fits(Some(hello)))
+        };
+        let own = hello();
+        let other = Hello {
+            device: !own.device,
+            ..own
+        };
+        assert_eq!(checked(BOUNDS.stiffness, &own), Ok(()));
+        for value in [BOUNDS.stiffness + 0.01, -0.01] {
+            assert!(checked(value, &own).unwrap_err().contains("out of bounds"));
+            assert!(tune(value).fits(None).is_err());
+            // The bounds of another device are those of its image.
+            assert_eq!(checked(value, &other), Ok(()));
+        }
+        for value in [f32::NAN, f32::INFINITY] {
+            for hello in [own, other] {
+                let refused = checked(value, &hello).unwrap_err();
+                assert!(refused.contains("out of bounds"), "{refused}");
+            }
         }
         assert!(Order::Hand { at: Some(f64::NAN) }.check().is_err());
         assert!(Order::Scene { number: 200 }.check().is_err());

@@ -10,6 +10,7 @@ use drive::port::Port;
 use drive::refusal::{compatible, silent};
 use drivers::link::{Hello, Message, Parser};
 use drivers::{Command, encode};
+use haptic_control::Fingerprint;
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
@@ -49,6 +50,9 @@ impl RealBoard {
         let mut parser = Parser::default();
         let hello = identity(&mut port, &mut parser, patience)?;
         compatible(port.name(), &hello)?;
+        if let Some(other) = other_device(&hello, &device) {
+            note(format_args!("{}: {other}", port.name()));
+        }
         Ok(Self {
             port,
             parser,
@@ -57,6 +61,17 @@ impl RealBoard {
             patience,
         })
     }
+}
+
+/// What a person has to know of an image for another device.
+fn other_device(hello: &Hello, device: &Device) -> Option<String> {
+    let [image, own] = [Fingerprint(hello.device), device.stages.fingerprint()];
+    (image != own).then(|| {
+        format!(
+            "the image is for device {image}, the page for {own}: angles, speeds and forces are those of the wrong \
+             device; give --device FILE of the board"
+        )
+    })
 }
 
 /// The amplifiers of a board at the begin.
@@ -108,10 +123,15 @@ fn read(port: &mut Port, parser: &mut Parser) -> io::Result<(Vec<u8>, Vec<Messag
 impl Source for RealBoard {
     fn facts(&self) -> Value {
         let mut all = facts::of_device(&self.device);
+        let text = "A board at its link. What only a simulation knows is missing.".to_owned();
+        let text = match other_device(&self.hello, &self.device) {
+            Some(other) => format!("{text} But {other}."),
+            None => text,
+        };
         all["source"] = json!({
             "kind": "board",
             "title": "board",
-            "text": "A board at its link. What only a simulation knows is missing.",
+            "text": text,
             "from": self.port.name(),
             "gap": GAP_S,
         });
@@ -227,5 +247,27 @@ impl RealBoard {
 
     fn lost(&self, error: &io::Error) -> Failure {
         Failure::Input(self.port.lost(error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn image_for_another_device_is_told() {
+        let device = Device::default();
+        let own = device.stages.fingerprint();
+        let hello = |device| Hello {
+            device,
+            ..Hello::default()
+        };
+        assert_eq!(other_device(&hello(own.0), &device), None);
+        let other = Fingerprint(own.0 ^ 1);
+        let told = other_device(&hello(other.0), &device).expect("a notice");
+        assert!(
+            told.contains(&own.to_string()) && told.contains(&other.to_string()),
+            "{told}"
+        );
     }
 }
