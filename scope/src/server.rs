@@ -24,6 +24,9 @@ use crate::token::random;
 /// Interval in which the server looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// The port that addresses of HTTP have without naming it.
+const HTTP: u16 = 80;
+
 /// A port of this machine.
 pub(crate) struct Server {
     listener: std::net::TcpListener,
@@ -100,8 +103,7 @@ async fn ended(hub: &Hub) {
 
 /// Refuses requests for another host, as after DNS rebinding, and from another origin.
 async fn own_origin(State(shared): State<Shared>, request: Request, next: Next) -> Response {
-    let port = shared.port;
-    let hosts = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
+    let hosts = hosts(shared.port);
     let headers = request.headers();
     let is_own = |value: &str| hosts.iter().any(|host| value == host);
     let host = text(headers, header::HOST);
@@ -120,6 +122,17 @@ async fn own_origin(State(shared): State<Shared>, request: Request, next: Next) 
         true => next.run(request).await,
         false => refuse(StatusCode::FORBIDDEN, "another origin"),
     }
+}
+
+/// The hosts of a page at this port. A browser leaves out that of HTTP.
+fn hosts(port: u16) -> Vec<String> {
+    let names = ["127.0.0.1", "localhost"];
+    let bare = names
+        .iter()
+        .filter(|_| port == HTTP)
+        .map(|it| (*it).to_owned());
+    let with_port = names.iter().map(|name| format!("{name}:{port}"));
+    with_port.chain(bare).collect()
 }
 
 fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
@@ -193,5 +206,17 @@ async fn download(
         Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, kind)], Body::from(bytes)).into_response(),
         Ok(Err(error)) => (StatusCode::CONFLICT, error).into_response(),
         Err(_) => refuse(StatusCode::INTERNAL_SERVER_ERROR, "the file cannot be made"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn browser_names_no_port_of_http() {
+        let with_port = ["127.0.0.1:80", "localhost:80", "127.0.0.1", "localhost"];
+        assert_eq!(hosts(80), with_port);
+        assert_eq!(hosts(8080), ["127.0.0.1:8080", "localhost:8080"]);
     }
 }
