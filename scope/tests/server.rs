@@ -123,6 +123,7 @@ fn garbage_floods_and_slow_readers_do_not_affect_the_board() {
             break;
         }
     }
+    vandal.wait_for_the_end();
     let counts = page.status("garbage is counted", |status| {
         status["counts"]["garbage"].as_u64() > Some(100)
     });
@@ -132,6 +133,7 @@ fn garbage_floods_and_slow_readers_do_not_affect_the_board() {
     let _ = long
         .socket
         .send(tungstenite::Message::text("x".repeat(100_000)));
+    long.wait_for_the_end();
     // The page that commands floods: what is too much is not followed, and counted.
     for k in 0..5000 {
         page.order(&json!({"do": "hand", "at": 1e-4 * f64::from(k % 7)}));

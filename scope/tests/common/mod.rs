@@ -175,6 +175,12 @@ pub(crate) fn request(
     (status.expect("a status"), answer)
 }
 
+/// Whether nothing has come in a read.
+fn is_pause(error: &std::io::Error) -> bool {
+    use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    matches!(error.kind(), WouldBlock | TimedOut | Interrupted)
+}
+
 /// A socket of the server.
 pub(crate) struct Client {
     pub(crate) socket: WebSocket<TcpStream>,
@@ -255,18 +261,22 @@ impl Client {
                 None
             }
             Ok(_) => None,
-            Err(tungstenite::Error::Io(error))
-                if matches!(
-                    error.kind(),
-                    std::io::ErrorKind::WouldBlock
-                        | std::io::ErrorKind::TimedOut
-                        | std::io::ErrorKind::Interrupted
-                ) =>
-            {
-                None
-            }
+            Err(tungstenite::Error::Io(error)) if is_pause(&error) => None,
             Err(error) => panic!("the socket ended: {error}"),
         }
+    }
+
+    /// Waits until the server has ended the socket.
+    pub(crate) fn wait_for_the_end(&mut self) {
+        let end = Instant::now() + LIMIT;
+        while Instant::now() < end {
+            match self.socket.read() {
+                Ok(_) => {}
+                Err(tungstenite::Error::Io(error)) if is_pause(&error) => {}
+                Err(_) => return,
+            }
+        }
+        panic!("the server did not end the socket within {LIMIT:?}");
     }
 
     fn take(&mut self, bytes: &[u8]) {
