@@ -3,6 +3,7 @@
 mod batch;
 mod bench;
 pub mod cli;
+mod delivery;
 mod desk;
 mod estimators;
 mod facts;

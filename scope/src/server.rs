@@ -7,13 +7,14 @@ use std::time::Duration;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{RawQuery, Request, State, WebSocketUpgrade};
-use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{Html, IntoResponse, Response};
 use axum::routing::get;
 use terminal::failure::Failure;
 use tokio::net::TcpListener;
 
+use crate::delivery::Delivery;
 use crate::estimators::Estimators;
 use crate::hub::Hub;
 use crate::page;
@@ -168,25 +169,27 @@ async fn socket(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Resp
         .on_upgrade(move |socket| session(socket, shared.hub))
 }
 
-async fn csv(method: Method, State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
-    download(shared, method, query, "text/csv", |finished| {
-        finished.csv().map(String::into_bytes)
-    })
-    .await
+async fn csv(State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
+    let make = |finished: Arc<Finished>| Ok(Body::from(finished.csv()?));
+    download(shared, query, "text/csv", make).await
 }
 
-async fn mcap(method: Method, State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
-    let make = |finished: &Finished| finished.mcap(&Estimators::names());
-    download(shared, method, query, "application/octet-stream", make).await
+async fn mcap(State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
+    let make = |finished: Arc<Finished>| {
+        let bytes = finished.mcap(&Estimators::names())?;
+        // It has all rows, the CSV the longest run alone.
+        let delivery = Delivery::new(bytes, move || finished.take());
+        Ok(Body::from_stream(delivery))
+    };
+    download(shared, query, "application/octet-stream", make).await
 }
 
 /// A file of the latest recording, made on a thread of its own.
 async fn download(
     shared: Shared,
-    method: Method,
     query: Option<String>,
     kind: &'static str,
-    make: impl FnOnce(&Finished) -> Result<Vec<u8>, String> + Send + 'static,
+    make: impl FnOnce(Arc<Finished>) -> Result<Body, String> + Send + 'static,
 ) -> Response {
     if query != Some(format!("token={}", shared.hub.token)) {
         return refuse(StatusCode::FORBIDDEN, "wrong token");
@@ -194,16 +197,9 @@ async fn download(
     let Some(finished) = shared.hub.recording() else {
         return refuse(StatusCode::NOT_FOUND, "no recording");
     };
-    let made = tokio::task::spawn_blocking(move || {
-        let bytes = make(&finished)?;
-        // A page that asks for the head gets no file.
-        if method == Method::GET {
-            finished.take();
-        }
-        Ok::<_, String>(bytes)
-    });
+    let made = tokio::task::spawn_blocking(move || make(finished));
     match made.await {
-        Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, kind)], Body::from(bytes)).into_response(),
+        Ok(Ok(body)) => ([(header::CONTENT_TYPE, kind)], body).into_response(),
         Ok(Err(error)) => (StatusCode::CONFLICT, error).into_response(),
         Err(_) => refuse(StatusCode::INTERNAL_SERVER_ERROR, "the file cannot be made"),
     }

@@ -238,7 +238,7 @@ fn recording_that_a_page_has_taken_is_not_written_again() {
     });
     page.order(&json!({"do": "record", "on": false}));
     page.status("its end", |status| status["recorded"] == true);
-    let path = format!("/recording.csv?token={}", server.token);
+    let path = format!("/recording.mcap?token={}", server.token);
     assert_eq!(get(server.port, &path, &[]).0, 200);
     assert!(server.interrupt());
     let files = std::fs::read_dir(&server.folder).expect("a folder");
@@ -258,9 +258,11 @@ fn recordings_that_no_page_has_taken_are_written_each() {
         page.status("its end", |status| {
             status["recording"].is_null() && status["recorded"] == true
         });
-        // The head of a file is no file.
+        // The head of a file is no file, and the CSV has not all rows.
         let path = format!("/recording.mcap?token={}", server.token);
         assert_eq!(request("HEAD", server.port, &path, &[]).0, 200);
+        let path = format!("/recording.csv?token={}", server.token);
+        assert_eq!(get(server.port, &path, &[]).0, 200);
     }
     assert!(server.interrupt());
     let rows = [1, 2].map(|number| {
