@@ -17,6 +17,14 @@ const ZEROS_S: f64 = 0.1;
 const ZERO_STEPS: f64 = 100.0;
 const GAIN_STEPS: f64 = 10_000.0;
 
+/// What the procedure sets.
+pub(crate) const SETTINGS: [Setting; 4] = [
+    CHANNELS[0].zero,
+    CHANNELS[0].gain,
+    CHANNELS[1].zero,
+    CHANNELS[1].gain,
+];
+
 /// Measures how both currents follow their commands, prints a line for each, and sets zero and gain on the
 /// board.
 ///

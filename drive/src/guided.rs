@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use drivers::Setting;
 use terminal::failure::Failure;
 
 use crate::board::Board;
@@ -30,6 +31,16 @@ impl Guided {
         match self {
             Self::BringUp => "bring-up",
             Self::Calibrate => "calibrate",
+        }
+    }
+
+    /// Settings that the board may have from the middle of the procedure if it is ended from outside: they are those
+    /// from before again after an end by itself. Bring-up leaves no verification of before.
+    #[must_use]
+    pub const fn provisional(self) -> &'static [Setting] {
+        match self {
+            Self::BringUp => &[],
+            Self::Calibrate => &calibrate::SETTINGS,
         }
     }
 

@@ -46,7 +46,7 @@ class Bench {
     }));
   }
 
-  status({ settings, stored, guide, on }) {
+  status({ settings, stored, guide, undoes, on }) {
     this.guided = guide?.runs === true;
     this.inputs.forEach((input, number) => {
       const value = settings?.[number];
@@ -56,8 +56,9 @@ class Bench {
         if (input.value !== text) input.value = text;
       }
     });
-    $("store").disabled = !settings || on || this.guided;
-    for (const button of $("guides").children) button.disabled = this.guided;
+    // The settings of an ended procedure are undone first.
+    $("store").disabled = !settings || on || this.guided || undoes;
+    for (const button of $("guides").children) button.disabled = this.guided || undoes;
     setText("stored", stored && !guide?.runs ? sentence(stored.words) : "");
     if (!guide) return setText("guide", "");
     const end = guide.runs ? "\u2026" : guide.failure ? `FAIL  ${guide.failure}` : "done";

@@ -1,5 +1,7 @@
 //! What a page does with a board before a scene runs: its settings, and the guided procedures.
 
+use std::time::Instant;
+
 use drive::guided::Guided;
 use drive::settings::outcome_words;
 use drivers::link::Message;
@@ -9,9 +11,13 @@ use serde_json::{Value, json};
 
 use crate::guide::Guide;
 use crate::order::Order;
+use crate::undo::Undo;
 
 /// Why a procedure ends whose page has closed or freezes.
 const NOT_HEARD: &str = "ended, as the page was not heard";
+
+/// Why a procedure ends with the server.
+const SERVER_ENDS: &str = "ended, as the server ends";
 
 /// Settings and procedures of a board.
 #[derive(Default)]
@@ -23,12 +29,16 @@ pub(crate) struct Bench {
     /// Outcome of the latest order to store, and their number.
     stored: Option<(String, u32)>,
     guide: Option<Guide>,
+    /// The settings at the begin of the procedure, which asks for them before it changes one.
+    before: Option<Vec<f32>>,
+    /// What a procedure that was ended has left.
+    undo: Option<Undo>,
 }
 
 impl Bench {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
-        self.settings = None;
+        (self.settings, self.undo) = (None, None);
         if let Some(guide) = &mut self.guide {
             guide.restarted();
         }
@@ -42,6 +52,9 @@ impl Bench {
     }
 
     pub(crate) fn message(&mut self, message: &Message) {
+        if let Some(undo) = &mut self.undo {
+            undo.heard();
+        }
         match message {
             Message::Setting(setting) => {
                 if setting.number == 0 {
@@ -51,7 +64,8 @@ impl Bench {
                     self.coming.push(setting.value);
                 }
                 if self.coming.len() == usize::from(setting.count) {
-                    self.settings = Some(std::mem::take(&mut self.coming));
+                    let settings = std::mem::take(&mut self.coming);
+                    self.complete(settings);
                 }
             }
             Message::Hello(hello) => {
@@ -72,6 +86,15 @@ impl Bench {
         }
     }
 
+    /// Takes the settings of an answer.
+    fn complete(&mut self, settings: Vec<f32>) {
+        if self.guide.as_ref().is_some_and(Guide::runs) {
+            self.before.get_or_insert_with(|| settings.clone());
+        }
+        self.undo.take_if(|undo| undo.is_done(&settings));
+        self.settings = Some(settings);
+    }
+
     /// Follows an order as far as it is one of the bench; whether it goes on to the board. While a procedure
     /// runs, the board has no other commander; the order to disarm has ended it before. A procedure begins if the board
     /// `is_known`.
@@ -79,10 +102,20 @@ impl Bench {
         let is_guided = self.guide.as_ref().is_some_and(Guide::runs);
         match order {
             Order::Guide { name } => {
-                if let Some(what) = guided(name).filter(|_| is_known && !is_guided) {
+                let is_free = is_known && !is_guided && self.undo.is_none();
+                if let Some(what) = guided(name).filter(|_| is_free) {
                     self.guide = Some(Guide::start(what));
+                    self.before = None;
                 }
                 false
+            }
+            // The flash would keep what an ended procedure has tried.
+            Order::Store if self.undo.is_some() => false,
+            Order::Set { setting, .. } if !is_guided => {
+                if let Some(undo) = &mut self.undo {
+                    undo.set(*setting);
+                }
+                true
             }
             _ => !is_guided || order.command().is_none(),
         }
@@ -91,10 +124,11 @@ impl Bench {
     /// The bytes of a procedure for the board. Without a page that commands, the procedure ends.
     pub(crate) fn take_bytes(&mut self, is_abandoned: bool) -> Vec<u8> {
         let Some(guide) = self.guide.as_mut().filter(|guide| guide.runs()) else {
-            return Vec::new();
+            let now = Instant::now();
+            return (self.undo.as_mut()).map_or_else(Vec::new, |undo| undo.bytes(now));
         };
         if is_abandoned {
-            guide.abandon(NOT_HEARD);
+            self.abandon(NOT_HEARD);
             return encode(Command::Request(Request::Disarm)).to_vec();
         }
         guide.take_bytes()
@@ -102,15 +136,30 @@ impl Bench {
 
     /// Ends a procedure, as the board is disarmed for this reason.
     pub(crate) fn abandon(&mut self, why: &str) {
-        if let Some(guide) = &mut self.guide {
-            guide.abandon(why);
+        if let Some(guide) = self.guide.as_mut().filter(|guide| guide.runs()) {
+            let is_ended = guide.abandon(why);
+            let before = self.before.take().filter(|_| is_ended);
+            self.undo = before.and_then(|before| Undo::new(guide.what(), &before));
         }
+    }
+
+    /// The server ends: the bytes that end a procedure and undo what it has left.
+    pub(crate) fn last_bytes(&mut self) -> Vec<u8> {
+        self.abandon(SERVER_ENDS);
+        let Some(mut undo) = self.undo.take() else {
+            return Vec::new();
+        };
+        undo.heard();
+        let mut bytes = encode(Command::Request(Request::Disarm)).to_vec();
+        bytes.extend(undo.bytes(Instant::now()));
+        bytes
     }
 
     pub(crate) fn json(&self) -> Value {
         let stored = self.stored.as_ref();
         json!({
             "settings": self.settings,
+            "undoes": self.undo.is_some(),
             "stored": stored.map(|(words, number)| json!({"words": words, "number": number})),
             "guide": self.guide.as_ref().map(Guide::json),
         })
@@ -208,6 +257,50 @@ mod tests {
             bench.message(&hello(Stop::Jump));
             assert_eq!(bench.json()["guide"]["failure"], said);
         }
+    }
+
+    /// The board is left with the zeros of the repeated strokes.
+    #[test]
+    fn calibration_that_is_ended_is_undone_before_anything_can_be_stored() {
+        for (what, undoes) in [(Guided::Calibrate, true), (Guided::BringUp, false)] {
+            let mut bench = Bench {
+                guide: Some(Guide::start(what)),
+                ..Bench::default()
+            };
+            let answer = |bench: &mut Bench, zero: f32| {
+                for number in 0..3 {
+                    bench.message(&setting(number, if number == 0 { zero } else { 1.0 }));
+                }
+            };
+            answer(&mut bench, 2048.0);
+            answer(&mut bench, 2036.0);
+            bench.abandon("ended by Disarm");
+            assert_eq!(bench.json()["undoes"], undoes);
+            assert_eq!(bench.order(&Order::Store, true), !undoes);
+            let zero = encode(Command::Set {
+                setting: 0,
+                value: 2048.0,
+            });
+            assert!(bench.take_bytes(false).is_empty(), "the board is silent");
+            bench.message(&Message::Stored(Stored { outcome: 1 }));
+            let sent = bench.take_bytes(false);
+            assert_eq!(sent.starts_with(&zero), undoes, "{sent:?}");
+            answer(&mut bench, 2048.0);
+            assert!(bench.order(&Order::Store, true));
+        }
+    }
+
+    #[test]
+    fn calibration_that_ends_with_the_server_is_disarmed_and_undone() {
+        let mut bench = Bench {
+            guide: Some(Guide::start(Guided::Calibrate)),
+            before: Some(vec![2048.0; 4]),
+            ..Bench::default()
+        };
+        let sent = bench.last_bytes();
+        let disarm = encode(Command::Request(Request::Disarm));
+        assert!(sent.starts_with(&disarm) && sent.len() > disarm.len());
+        assert_eq!(bench.last_bytes(), Vec::<u8>::new());
     }
 
     #[test]

@@ -189,6 +189,11 @@ impl Desk {
         self.bench.take_bytes(self.hub.is_abandoned())
     }
 
+    /// The source ends: bytes that end a procedure and undo what it has left.
+    pub(crate) fn last_bytes(&mut self) -> Vec<u8> {
+        self.bench.last_bytes()
+    }
+
     /// Takes a message of the board, with the truth of a frame if it is known.
     pub(crate) fn message(&mut self, message: Message, truth: Option<&Truth>) {
         if let Some(recorder) = &mut self.recorder {

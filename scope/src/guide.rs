@@ -50,6 +50,10 @@ impl Guide {
         }
     }
 
+    pub(crate) const fn what(&self) -> Guided {
+        self.what
+    }
+
     pub(crate) const fn runs(&self) -> bool {
         self.run.is_some()
     }
@@ -88,15 +92,17 @@ impl Guide {
         }
     }
 
-    /// Ends the procedure where it is, for this reason; one that has ended already has its own result. The board has to
-    /// be disarmed after it.
-    pub(crate) fn abandon(&mut self, why: &str) {
+    /// Ends the procedure where it is, for this reason; one that has ended already has its own result. Whether it was ended
+    /// here: the board has to be disarmed after it.
+    pub(crate) fn abandon(&mut self, why: &str) -> bool {
         if (self.run.as_ref()).is_some_and(|run| run.thread.is_finished()) {
             self.join();
         }
-        if self.run.take().is_some() {
+        let is_ended = self.run.take().is_some();
+        if is_ended {
             self.failure = Some(format!("{}: {why}", self.what.as_str()));
         }
+        is_ended
     }
 
     /// Ends the procedure as the board has started again. Its next identity has the cause.

@@ -22,4 +22,5 @@ mod source;
 mod stream;
 mod tactile;
 mod token;
+mod undo;
 mod values;

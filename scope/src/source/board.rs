@@ -148,6 +148,7 @@ impl Source for RealBoard {
             hub.ended(failure);
         }
         // A lost connection cannot be told again.
+        let _ = self.port.write(&desk.last_bytes());
         let disarmed = disarm(self.port, self.patience);
         followed.and(disarmed)
     }
