@@ -84,8 +84,9 @@ pub(crate) trait Port {
 
 /// The flash that keeps the settings.
 pub(crate) trait Memory {
-    /// Stores the settings, in a few milliseconds. The amplifiers are disabled.
-    fn save(&mut self, settings: &Settings) -> Saved;
+    /// Stores the settings, in 30 ms at most, which is longer than a watchdog may wait. `between` is called after
+    /// every 0.1 ms at most. The amplifiers are disabled.
+    fn save(&mut self, settings: &Settings, between: &mut dyn FnMut()) -> Saved;
 }
 
 /// A board that has just started.

@@ -166,7 +166,14 @@ impl<W: Watchdog, P: Port, M: Memory> IdleTask<W, P, M> {
     /// One look at the channels. The watchdog is fed if the control task has sent a frame.
     #[inline(always)]
     pub(crate) fn run(&mut self) {
-        let Self { link, commands, .. } = self;
+        let Self {
+            link,
+            commands,
+            frames,
+            rest,
+            watchdog,
+            ..
+        } = self;
         link.port.look();
         // In turn: a channel that fills the queue of messages leaves the other its share.
         self.port_first = !self.port_first;
@@ -182,7 +189,7 @@ impl<W: Watchdog, P: Port, M: Memory> IdleTask<W, P, M> {
         }
         link.rtt = commands.is_used(Channel::Rtt);
         if commands.take_arms() {
-            self.rest.arms();
+            rest.arms();
         }
         let asked = commands.asked();
         if asked.identity {
@@ -193,8 +200,10 @@ impl<W: Watchdog, P: Port, M: Memory> IdleTask<W, P, M> {
             link.settings(commands.settings());
         }
         if asked.store {
-            let saved = if self.rest.is_certain() {
-                self.memory.save(commands.settings())
+            let saved = if rest.is_certain() {
+                self.memory.save(commands.settings(), &mut || {
+                    pass(frames, link, rest, watchdog);
+                })
             } else {
                 Saved::Enabled
             };
@@ -202,9 +211,7 @@ impl<W: Watchdog, P: Port, M: Memory> IdleTask<W, P, M> {
                 outcome: saved as u8,
             });
         }
-        if log::frames(&mut self.frames, link, &mut self.rest) {
-            self.watchdog.feed();
-            firmware_rt::undo_debugger();
+        if pass(frames, link, rest, watchdog) {
             if let Some([before, now]) = commands.report() {
                 log::rejected([before, now]);
                 link.rejected(now);
@@ -214,4 +221,21 @@ impl<W: Watchdog, P: Port, M: Memory> IdleTask<W, P, M> {
             }
         }
     }
+}
+
+/// Logs and sends the frames that wait. Feeds the watchdog if there were any: a control task that has stopped
+/// sends none. Returns whether there were. A function of its own, so that the task has its code once.
+#[inline(never)]
+fn pass(
+    frames: &mut Consumer<'static, Frame>,
+    link: &mut Link<impl Port>,
+    rest: &mut Rest,
+    watchdog: &mut impl Watchdog,
+) -> bool {
+    let any = log::frames(frames, link, rest);
+    if any {
+        watchdog.feed();
+        firmware_rt::undo_debugger();
+    }
+    any
 }

@@ -43,6 +43,29 @@ pub(crate) fn size() -> Result<Image, String> {
         .map_err(|error| format!("flash at {SIZE_WORD:#x}: {error}"))
 }
 
+/// How long the flash takes, of the table "Flash memory programming" of the data sheet of STM32F427 and
+/// STM32F429 (DS9405), at a parallelism of x8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FlashTimes {
+    /// Time to program a byte, ns.
+    pub program_ns: u64,
+    /// Time to erase a sector of 16 KiB, ns: at least the typical one, which is the emulator's.
+    pub erase_ns: u64,
+}
+
+impl FlashTimes {
+    /// Typical times.
+    pub const TYPICAL: Self = Self {
+        program_ns: 16_000,
+        erase_ns: 400_000_000,
+    };
+    /// The longest times.
+    pub const LONGEST: Self = Self {
+        program_ns: 100_000,
+        erase_ns: 800_000_000,
+    };
+}
+
 /// A change of the sectors by the flash interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {

@@ -252,6 +252,7 @@ pub(crate) fn emulate(
         (None, None) => Sectors::erased(),
     };
     board.part.flash.place(flash);
+    board.part.flash.take(setup.flash_times);
     let mut session =
         Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
     let mut lockstep = Lockstep::new(image, setup, Box::new(progress));

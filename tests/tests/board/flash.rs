@@ -4,7 +4,7 @@ use drivers::link::Message;
 use drivers::{Command, Saved, Setting, Settings};
 use haptic_control::Stop;
 use virtual_board::fault::Fault;
-use virtual_board::flash::{Change, Sectors};
+use virtual_board::flash::{Change, FlashTimes, Sectors};
 use virtual_board::run::{ControlTick, CoreAccess, Outcome, Setup};
 
 use crate::link::of_port;
@@ -105,6 +105,77 @@ fn store_does_not_delay_the_control_tick() {
     // An interrupt waits for the instructions of a critical section at most.
     assert!(worst_with.0 <= worst_without.0 + 500);
     assert!(worst_with.1 <= worst_without.1);
+}
+
+/// A board whose flash takes the longest times of the data sheet.
+fn slow(setup: Setup) -> Setup {
+    Setup {
+        flash_times: FlashTimes::LONGEST,
+        ..setup
+    }
+}
+
+/// 256 bytes take 26 ms, and the watchdog waits 19 ms at the highest frequency of its oscillator.
+#[test]
+fn store_in_a_slow_flash_does_not_outlast_a_fast_watchdog() {
+    for oscillator in [None, Some(Fault::FastWatchdog), Some(Fault::SlowWatchdog)] {
+        let run = commanded(
+            0.2,
+            &[(0.05, serial(77.0)), (0.10, Command::Store)],
+            slow(Setup {
+                faults: oscillator.map(|fault| (0.0, fault)).into_iter().collect(),
+                ..Setup::default()
+            }),
+        );
+        assert_eq!(stored(&run), [Saved::Stored], "{oscillator:?}");
+        assert!(
+            run.restarts.is_empty(),
+            "{oscillator:?}: {:?}",
+            run.restarts
+        );
+        assert_eq!(run.flash.settings(), Some(numbered(77.0)));
+        // No frame is lost meanwhile, at the debug probe or at the port.
+        let sequence = run.telemetry.frames.iter().map(|frame| frame.seq);
+        assert!(sequence.eq(0..run.telemetry.frames.len() as u32));
+    }
+}
+
+/// The watchdog is fed for the frames of the control task alone.
+#[test]
+fn store_does_not_hide_a_dead_control_task() {
+    const AT_S: f64 = 0.105;
+    let run = commanded(
+        0.3,
+        &[(0.05, serial(77.0)), (0.10, Command::Store)],
+        slow(Setup {
+            faults: vec![(AT_S, Fault::HungControl)],
+            ..Setup::default()
+        }),
+    );
+    let [restart] = &run.restarts[..] else {
+        panic!("{:?}", run.restarts)
+    };
+    // The latest frame came up to 1 ms before the fault.
+    let late_ms = 1e3 * (restart.at_s - AT_S);
+    assert!((26.9..28.1).contains(&late_ms), "{late_ms} ms");
+}
+
+/// Twice the longest time of an erasure, by an oscillator that is 1.5 times as fast.
+#[test]
+fn slow_erasure_is_shorter_than_the_patience_of_a_fast_watchdog() {
+    let run = commanded(
+        1.2,
+        &[(1.1, Command::Settings)],
+        slow(Setup {
+            faults: vec![(0.0, Fault::FastWatchdog)],
+            older_records: 64,
+            ..Setup::default()
+        }),
+    );
+    assert!(run.restarts.is_empty(), "{:?}", run.restarts);
+    assert_eq!(run.flash_changes, [Change::Erase { sector: 0 }]);
+    let first_s = run.ticks.first().expect("ticks").at_ns as f64 * 1e-9;
+    assert!((0.8..0.95).contains(&first_s), "{first_s} s");
 }
 
 /// `FLASH_ACR`, and the enables of prefetch and both caches in it.

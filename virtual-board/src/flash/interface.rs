@@ -12,12 +12,7 @@ use rigless::soc::stm32f427::generated::flash::{
 use rigless::soc::stm32f427::peripherals::flash::Flash;
 use rigless::time::{EventId, VirtualNanos};
 
-use super::{Change, Sectors};
-
-/// Time to program a byte, ns: typical, of the table "Flash memory programming" of the data sheet of
-/// STM32F427 and STM32F429 (DS9405), at a parallelism of x8. That of the erasure of 16 KiB is the
-/// emulator's, 400 ms, of the same table.
-const PROGRAM_NS: u64 = 16_000;
+use super::{Change, FlashTimes, Sectors};
 
 /// Rate of the buses after a reset, Hz, and the supply, mV.
 const RESET_HZ: u64 = 16_000_000;
@@ -26,8 +21,8 @@ const SUPPLY_MV: NonZeroU32 = NonZeroU32::new(3300).expect("not zero");
 /// Value of the field `SNB` of sector 12. Those of bank 2 begin with the bit of weight 16.
 const SNB_12: u64 = 0b10000;
 
-/// The interface. The emulator's model has the registers, the keys, the lock, and the time of an erasure;
-/// this one adds the content of the two sectors, and programming.
+/// The interface. The emulator's model has the registers, the keys, the lock, and the typical time of an
+/// erasure; this one adds the content of the two sectors, programming, and longer erasures.
 ///
 /// * A byte is programmed by a store while `PG` is set and `PSIZE` is x8; it clears bits and sets none.
 /// * A store without `PG` sets `PGSERR`, one with another `PSIZE` or of more than a byte sets `PGPERR`, and
@@ -38,10 +33,15 @@ const SNB_12: u64 = 0b10000;
 pub(crate) struct FlashInterface {
     inner: Flash,
     sectors: Sectors,
+    times: FlashTimes,
     /// Changes so far, in their order.
     pub(crate) changes: Vec<Change>,
     /// Time until which a byte is being programmed, ns.
     busy_until: u64,
+    /// Time until which a sector is being erased, ns.
+    erases_until: u64,
+    /// The event at that time, and the one at which the emulator's model would have ended the erasure.
+    ends: Option<[EventId; 2]>,
     /// The erasure that begins, until the lockstep has asked for it.
     erased: Option<Change>,
 }
@@ -51,8 +51,11 @@ impl FlashInterface {
         Self {
             inner: fresh(),
             sectors: Sectors::erased(),
+            times: FlashTimes::TYPICAL,
             changes: Vec::new(),
             busy_until: 0,
+            erases_until: 0,
+            ends: None,
             erased: None,
         }
     }
@@ -63,12 +66,17 @@ impl FlashInterface {
         let (optcr, optcr1) = self.inner.committed_options();
         self.inner = fresh();
         self.inner.keep_options(optcr, optcr1, registers);
-        self.busy_until = 0;
+        (self.busy_until, self.erases_until, self.ends) = (0, 0, None);
     }
 
     /// Places a content, as a run begins.
     pub(crate) fn place(&mut self, sectors: Sectors) {
         self.sectors = sectors;
+    }
+
+    /// Sets how long changes take, as a run begins.
+    pub(crate) fn take(&mut self, times: FlashTimes) {
+        self.times = times;
     }
 
     pub(crate) fn sectors(&self) -> &Sectors {
@@ -108,7 +116,7 @@ impl FlashInterface {
             return now_ns;
         }
         let from = now_ns.max(self.busy_until);
-        self.busy_until = from + PROGRAM_NS;
+        self.busy_until = from + self.times.program_ns;
         self.apply(change);
         from
     }
@@ -174,6 +182,7 @@ impl Device for FlashInterface {
                 };
                 self.apply(change);
                 self.erased = Some(change);
+                self.erases_until = context.now().0 + self.times.erase_ns;
             }
             None => context.tell("CR", "flash beside the sectors of the settings is erased"),
         }
@@ -185,6 +194,18 @@ impl Device for FlashInterface {
         registers: &mut RegisterFile,
         context: &mut DeviceContext<'_>,
     ) {
+        let event = match self.ends {
+            Some([end, inner]) if end == event => {
+                self.ends = None;
+                inner
+            }
+            _ if context.now().0 < self.erases_until => {
+                let end = context.schedule(VirtualNanos(self.erases_until));
+                self.ends = Some([end, event]);
+                return;
+            }
+            _ => event,
+        };
         self.inner.on_event(event, registers, context);
     }
 
@@ -304,6 +325,21 @@ mod tests {
         unlock(&mut part, 30_000);
         assert_eq!(get(&mut part, 30_000, CR), 0);
         assert_eq!(part.flash.sectors().bytes()[..2], [0x12, 0xFF]);
+    }
+
+    #[test]
+    fn changes_take_the_longest_times_of_the_data_sheet_where_a_run_asks_for_them() {
+        let mut part = unlocked(PG_SET);
+        part.flash.take(FlashTimes::LONGEST);
+        part.store_to_flash(0, 5, &[0x5A]);
+        assert_eq!(get(&mut part, 99_999, SR), BUSY);
+        assert_eq!(get(&mut part, 100_000, SR), 0);
+        set(&mut part, 200_000, CR, ERASES_12);
+        for (at_ns, flag) in [(800_199_999, BUSY), (800_200_000, 0)] {
+            part.advance_to(VirtualNanos(at_ns));
+            assert_eq!(get(&mut part, at_ns, SR), flag);
+        }
+        assert!(part.drain_told().is_empty());
     }
 
     #[test]

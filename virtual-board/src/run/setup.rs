@@ -12,7 +12,7 @@ use crate::board::CORE_HZ;
 use crate::command::Command;
 pub use crate::dac::LEAST_LOAD_OHM;
 use crate::fault::Fault;
-use crate::flash::Sectors;
+use crate::flash::{FlashTimes, Sectors};
 use crate::lockstep::CoreAccess;
 use crate::port::LineErrors;
 
@@ -87,6 +87,8 @@ pub struct Setup {
     pub older_records: u32,
     /// Content of the sectors of the settings instead, such as another run has left it.
     pub flash: Option<Sectors>,
+    /// How long the flash takes to program and to erase.
+    pub flash_times: FlashTimes,
     /// Additional loads and stores of the core, and their times, s.
     pub accesses: Vec<(f64, CoreAccess)>,
     /// Instructions per second of virtual time.
@@ -123,6 +125,7 @@ impl Default for Setup {
             settings: Some(Settings::COMMISSIONED),
             older_records: 1,
             flash: None,
+            flash_times: FlashTimes::TYPICAL,
             accesses: Vec::new(),
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),

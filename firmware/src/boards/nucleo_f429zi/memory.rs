@@ -51,7 +51,7 @@ impl Flash {
             return;
         }
         patient(&mut || {
-            if uncached(flash, |flash| store.prepare(flash)).is_err() {
+            if uncached(flash, &mut || (), |flash| store.prepare(flash)).is_err() {
                 defmt::warn!("the flash of the settings cannot be erased");
             }
         });
@@ -59,9 +59,11 @@ impl Flash {
 }
 
 impl Memory for Flash {
-    fn save(&mut self, settings: &Settings) -> Saved {
+    // In a frame of its own the copies of a record do not stay on the stack of the task of lowest priority.
+    #[inline(never)]
+    fn save(&mut self, settings: &Settings, between: &mut dyn FnMut()) -> Saved {
         match &mut self.store {
-            Some(store) => uncached(&mut self.flash, |flash| {
+            Some(store) => uncached(&mut self.flash, between, |flash| {
                 store.save(flash, &settings.encode()).into()
             }),
             None => Saved::Refused,
@@ -70,10 +72,18 @@ impl Memory for Flash {
 }
 
 /// Changes the flash without the data cache, which would keep bytes of before. It may also hold wrong bytes
-/// after a read from one bank while the other one is written (erratum 2.2.15 of ES0206).
-fn uncached<T>(flash: &mut FLASH, change: impl FnOnce(&mut ByteByByte<'_>) -> T) -> T {
+/// after a read from one bank while the other one is written (erratum 2.2.15 of ES0206). `between` is called
+/// after each byte.
+fn uncached<T>(
+    flash: &mut FLASH,
+    between: &mut dyn FnMut(),
+    change: impl FnOnce(&mut ByteByByte<'_>) -> T,
+) -> T {
     flash.acr().modify(|_, w| w.dcen().clear_bit());
-    let result = change(&mut ByteByByte(flash.unlocked()));
+    let result = change(&mut ByteByByte {
+        flash: flash.unlocked(),
+        between,
+    });
     flash.acr().modify(|_, w| w.dcrst().set_bit());
     flash.acr().modify(|_, w| w.dcrst().clear_bit());
     flash.acr().modify(|_, w| w.dcen().set_bit());
@@ -83,7 +93,11 @@ fn uncached<T>(flash: &mut FLASH, change: impl FnOnce(&mut ByteByByte<'_>) -> T)
 /// The flash, programmed a byte at a time. The HAL stores up to 16 bytes in a row, and a store while a byte is
 /// being programmed holds the core on the bus, interrupts included, for 16 us and up to 100 us. Between single
 /// bytes the core waits in a loop, which the control task interrupts.
-struct ByteByByte<'a>(UnlockedFlash<'a>);
+struct ByteByByte<'a> {
+    flash: UnlockedFlash<'a>,
+    /// Called after each byte: the 256 bytes of a record take 4 ms, and up to 26 ms.
+    between: &'a mut dyn FnMut(),
+}
 
 impl<'a> ErrorType for ByteByByte<'a> {
     type Error = <UnlockedFlash<'a> as ErrorType>::Error;
@@ -93,11 +107,11 @@ impl ReadNorFlash for ByteByByte<'_> {
     const READ_SIZE: usize = 1;
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        self.0.read(offset, bytes)
+        self.flash.read(offset, bytes)
     }
 
     fn capacity(&self) -> usize {
-        self.0.capacity()
+        self.flash.capacity()
     }
 }
 
@@ -106,13 +120,15 @@ impl NorFlash for ByteByByte<'_> {
     const ERASE_SIZE: usize = <UnlockedFlash<'_> as NorFlash>::ERASE_SIZE;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
-        NorFlash::erase(&mut self.0, from, to)
+        NorFlash::erase(&mut self.flash, from, to)
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
-        (offset..)
-            .zip(bytes)
-            .try_for_each(|(at, byte)| self.0.write(at, &[*byte]))
+        (offset..).zip(bytes).try_for_each(|(at, byte)| {
+            let written = self.flash.write(at, &[*byte]);
+            (self.between)();
+            written
+        })
     }
 }
 
