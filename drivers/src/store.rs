@@ -16,7 +16,7 @@ const BLANK: u8 = 0xFF;
 /// The newest of the records in two sectors of flash.
 ///
 /// A record is a sequence number, `N` bytes, and the CRC-32 of both; numbers are little endian. Each
-/// [`save`](Self::save) writes a record behind the last one and erases nothing. When a sector is full, the
+/// [`save`](Self::save) of other bytes writes a record behind the last one and erases nothing. When a sector is full, the
 /// records go on in the other one. [`prepare`](Self::prepare) erases the sector without the newest record.
 /// The newest valid record is therefore never erased, and a record that was not completed is not valid: a
 /// loss of power leaves the record before or the new one.
@@ -27,8 +27,18 @@ const BLANK: u8 = 0xFF;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Store<const N: usize> {
     sectors: [Sector; 2],
-    /// Index of the sector with the newest record, and its number.
-    newest: Option<(usize, u32)>,
+    newest: Option<Newest>,
+}
+
+/// Where the newest record is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Newest {
+    /// Index of its sector.
+    sector: usize,
+    /// Its number.
+    number: u32,
+    /// Its first byte.
+    at: u32,
 }
 
 /// A sector of the store.
@@ -81,8 +91,12 @@ impl<const N: usize> Store<N> {
                 let Some((number, bytes)) = Self::read(flash, at)? else {
                     continue;
                 };
-                if store.newest.is_none_or(|(_, newest)| number > newest) {
-                    store.newest = Some((i, number));
+                if store.newest.is_none_or(|newest| number > newest.number) {
+                    store.newest = Some(Newest {
+                        sector: i,
+                        number,
+                        at,
+                    });
                     record = Some(bytes);
                 }
             }
@@ -130,7 +144,7 @@ impl<const N: usize> Store<N> {
     /// Whether a sector has the newest record, or none. Bytes behind its last place are never used.
     fn is_usable(&self, sector: usize) -> bool {
         let Sector { range, free } = &self.sectors[sector];
-        *free == range.start || self.newest.is_some_and(|(newest, _)| newest == sector)
+        *free == range.start || self.newest.is_some_and(|newest| newest.sector == sector)
     }
 
     /// Erases the sector without the newest record, unless it is blank; both sectors if there is no record.
@@ -149,7 +163,7 @@ impl<const N: usize> Store<N> {
         Ok(())
     }
 
-    /// Writes a record.
+    /// Writes a record, unless the newest one has these bytes.
     ///
     /// # Errors
     /// [`SaveError`]; the record before is then still the newest.
@@ -161,7 +175,14 @@ impl<const N: usize> Store<N> {
         const {
             assert!(WORD.is_multiple_of(F::WRITE_SIZE) && N.is_multiple_of(F::WRITE_SIZE));
         }
-        let (first, last) = self.newest.unwrap_or((0, 0));
+        let (mut first, mut last) = (0, 0);
+        if let Some(Newest { sector, number, at }) = self.newest {
+            let record = Self::read(flash, at).map_err(SaveError::Flash)?;
+            if record == Some((number, *bytes)) {
+                return Ok(());
+            }
+            (first, last) = (sector, number);
+        }
         for i in [first, 1 - first] {
             let Sector { range, free } = &mut self.sectors[i];
             let at = *free;
@@ -176,7 +197,11 @@ impl<const N: usize> Store<N> {
             if !kept {
                 return Err(SaveError::Mismatch);
             }
-            self.newest = Some((i, number));
+            self.newest = Some(Newest {
+                sector: i,
+                number,
+                at,
+            });
             return Ok(());
         }
         Err(SaveError::Full)

@@ -128,6 +128,35 @@ fn store_takes_the_records_of_a_sector_and_a_half_between_two_restarts() {
     assert_eq!(store.save(&mut flash, &[6; N]), Ok(()));
 }
 
+/// A command that is repeated, because its answer was lost, wears the flash once.
+#[test]
+fn record_that_is_the_newest_already_is_not_written_again() {
+    let mut flash = Flash::blank();
+    let (mut store, _) = start(&mut flash);
+    for k in [1, 2] {
+        assert_eq!(store.save(&mut flash, &[k; N]), Ok(()));
+    }
+    let written = flash.bytes.clone();
+    for _ in 0..20 {
+        assert_eq!(store.save(&mut flash, &[2; N]), Ok(()));
+        (store, _) = start(&mut flash);
+    }
+    assert_eq!(flash.bytes, written);
+    // The one before the newest is written again.
+    assert_eq!(store.save(&mut flash, &[1; N]), Ok(()));
+    assert_eq!(start(&mut flash).1, Some([1; N]));
+    // A newest record that has been damaged since is not taken for the same.
+    let damaged = flash
+        .bytes
+        .iter()
+        .rposition(|byte| *byte == 1)
+        .expect("a record");
+    let (mut store, _) = start(&mut flash);
+    flash.bytes[damaged] = 0;
+    assert_eq!(store.save(&mut flash, &[1; N]), Ok(()));
+    assert_eq!(start(&mut flash).1, Some([1; N]));
+}
+
 /// Records of 64 bytes fill a sector to its last byte.
 #[test]
 fn record_that_ends_with_its_sector_is_found() {

@@ -6,7 +6,7 @@ mod map;
 use std::ops::Range;
 use std::path::Path;
 
-use drivers::{SETTINGS_BYTES, SaveError, Settings, Store};
+use drivers::{SETTINGS_BYTES, SaveError, Setting, Settings, Store};
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash, check_erase, check_read, check_write,
 };
@@ -111,8 +111,11 @@ impl Sectors {
     /// One line if they do not fit.
     pub fn with(settings: &Settings, older: u32) -> Result<Self, String> {
         let mut flash = Self::erased();
-        for _ in 0..older {
-            flash.store(&Settings::DEFAULT)?;
+        for number in 1..=older {
+            // No record is stored twice in a row.
+            let mut other = Settings::DEFAULT;
+            other.set(Setting::Serial, 1e6 + number as f32);
+            flash.store(&other)?;
         }
         flash.store(settings)?;
         Ok(flash)

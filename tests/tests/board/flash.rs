@@ -187,7 +187,7 @@ fn store_leaves_the_caches_of_the_flash_on() {
     let load = CoreAccess::Load(ACCESS_CONTROL);
     let run = commanded(
         0.2,
-        &[(0.10, Command::Store)],
+        &[(0.05, serial(77.0)), (0.10, Command::Store)],
         Setup {
             accesses: vec![(0.09, load), (0.19, load)],
             ..Setup::default()
