@@ -7,7 +7,7 @@ use heapless::spsc::{Producer, Queue};
 use crate::control::Message;
 use crate::large::{Large, LargeEstimator as _};
 use crate::reports::Reports;
-use crate::scene::{Parameters, TORQUE_SCENE};
+use crate::scene::{self, Parameters, TORQUE_SCENE};
 
 /// Messages that wait for the control task, which takes three in ten ticks at 10 kHz.
 pub type Messages = Queue<Message, 8>;
@@ -113,6 +113,7 @@ impl<'q> Commands<'q> {
     /// The message of a command. Scenes are built here, at low priority.
     fn follow(&mut self, command: Command) -> Option<Message> {
         let message = match command {
+            Command::Request(Request::Select(scene)) if !scene::has(scene) => Err(Refusal::Unknown),
             Command::Request(Request::Select(scene)) if !self.admits(scene) => {
                 let count = &mut self.rejected.unverified;
                 *count = count.wrapping_add(1);
@@ -179,8 +180,7 @@ impl<'q> Commands<'q> {
         Ok(Message::Settings(self.settings, request))
     }
 
-    /// Whether the scene may be selected: a scene in closed loop needs verified signs. The safety machine
-    /// ignores the number of a scene that does not exist.
+    /// Whether the scene may be selected: a scene in closed loop needs verified signs.
     fn admits(&self, scene: u8) -> bool {
         let kind = SceneKind::ALL.get(usize::from(scene));
         self.settings.are_signs_verified() || !kind.is_some_and(|kind| kind.is_closed_loop())

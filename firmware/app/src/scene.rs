@@ -73,6 +73,16 @@ pub const SCENES: u8 = SceneKind::ALL.len() as u8;
 /// Number of the scene of the torque set-point.
 pub const TORQUE_SCENE: u8 = SceneKind::Torque.number();
 
+/// Whether the image has the scene of a number. Every image has off.
+#[must_use]
+pub const fn has(scene: u8) -> bool {
+    if cfg!(one_scene) {
+        scene == SceneKind::Off.number() || scene == FIRST
+    } else {
+        scene < SCENES
+    }
+}
+
 pub mod all;
 
 macro_rules! image {

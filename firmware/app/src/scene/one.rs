@@ -65,13 +65,13 @@ impl Core {
         self.on = false;
     }
 
-    /// Switches the scene on, from rest, or off. The torque set-point starts at zero.
+    /// Starts the scene at rest, also if it is on, or switches it off. The torque set-point starts at zero.
     pub fn select(&mut self, scene: u8, latest: &Sample) {
         let on = scene == FIRST;
         if on && FIRST == TORQUE_SCENE {
             self.controller.retune(THE_SCENE);
         }
-        if on && !self.on {
+        if on {
             self.controller.restart(&mut self.state, latest);
         }
         self.on = on;

@@ -2,7 +2,7 @@ use drivers::{Command, Settings, encode};
 use firmware_app::commands::{Asked, Channel, Commands, Messages, Rejected};
 use firmware_app::control::Message;
 use firmware_app::large::{Large, LargeEstimator as _};
-use firmware_app::scene::FIRST;
+use firmware_app::scene::{self, FIRST};
 use haptic_control::Request;
 use haptic_control::SceneKind;
 
@@ -26,8 +26,12 @@ fn rejected(bytes: &[u8]) -> Option<[Rejected; 2]> {
 #[test]
 fn request_is_converted_to_a_message() {
     // As docs/telemetry.md has the frame: select scene 2.
-    let [Message::Request(request)] = messages(&[[0xA5, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0xAD]])[..]
-    else {
+    let found = messages(&[[0xA5, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0xAD]]);
+    if !scene::has(2) {
+        assert!(found.is_empty());
+        return;
+    }
+    let [Message::Request(request)] = found[..] else {
         panic!("one request");
     };
     assert_eq!(request, Request::Select(2));
@@ -55,6 +59,25 @@ fn poll_reads_at_most_64_bytes_and_only_if_the_queue_has_room() {
         commands.receive(Channel::Rtt, || bytes.next());
     }
     assert_eq!(taken, 20);
+}
+
+/// An image of one scene has off and that scene.
+#[test]
+fn scenes_that_the_image_has_are_selected_and_others_are_unknown() {
+    let has = |scene: u8| match cfg!(one_scene) {
+        true => [0, FIRST].contains(&scene),
+        false => usize::from(scene) < SceneKind::ALL.len(),
+    };
+    for scene in 0..=u8::MAX {
+        let select = encode(Command::Request(Request::Select(scene)));
+        assert_eq!(
+            messages(&[select]).len(),
+            usize::from(has(scene)),
+            "{scene}"
+        );
+        let unknown = rejected(&select).map_or(0, |[_, now]| now.unknown);
+        assert_eq!(unknown, u32::from(!has(scene)), "{scene}");
+    }
 }
 
 #[test]

@@ -234,7 +234,7 @@ fn parameter_commands_take_effect_and_count_as_keep_alive() {
     let mut bench = Bench::new();
     let request = |message| bench.control.accept(message);
     let mut requests: Vec<_> = messages(&[
-        encode(Command::Request(Request::Select(3))),
+        encode(Command::Request(Request::Select(FIRST))),
         encode(Command::Request(Request::Disarm)),
     ])
     .into_iter()
@@ -242,7 +242,7 @@ fn parameter_commands_take_effect_and_count_as_keep_alive() {
     .map(request)
     .collect();
     requests.push(bench.control.accept(None));
-    let [select, disarm] = [Request::Select(3), Request::Disarm].map(Some);
+    let [select, disarm] = [Request::Select(FIRST), Request::Disarm].map(Some);
     assert_eq!(requests, [select, disarm, None]);
     // Scene 4 is viscous and has a damping; torque is of scene 8.
     for command in [

@@ -5,7 +5,7 @@ use firmware_app::commands::{Asked, Channel, Commands, Messages, Rejected};
 use firmware_app::config::DEVICE;
 use firmware_app::control::{Inputs, Message};
 use firmware_app::large::{Large, LargeEstimator as _};
-use firmware_app::scene::FIRST;
+use firmware_app::scene::{self, FIRST};
 use haptic_control::{Mode, Request, SceneKind, Stop};
 
 use crate::bench::{Bench, CALM, ticks};
@@ -90,6 +90,9 @@ fn settings_are_asked_for_and_stored_by_commands() {
 fn closed_loop_scenes_are_refused_until_the_signs_are_verified() {
     let select = |scene: u8| Command::Request(Request::Select(scene));
     for kind in SceneKind::ALL {
+        if !scene::has(kind.number()) {
+            continue;
+        }
         let needs = kind.facts().needs;
         let is_open = !needs.continuous && !needs.transient;
         let (messages, _, rejected, _) = followed(Settings::DEFAULT, &[select(kind.number())]);
@@ -230,5 +233,27 @@ fn estimator_of_the_settings_is_in_charge_after_a_start() {
         };
         let found = bench.record().estimation.number;
         assert_eq!(found, needs.continuous.then_some(expected));
+    }
+}
+
+/// As one that is switched off and on again: hold keeps another angle, and the angles of an image of one scene
+/// are relative to the one at the selection.
+#[test]
+fn selection_of_the_scene_that_is_on_starts_it_again() {
+    let kinds = [SceneKind::Wall, SceneKind::SpringDamper, SceneKind::Hold].map(SceneKind::number);
+    for scene in kinds.into_iter().filter(|scene| scene::has(*scene)) {
+        let torque_after = |selections: &[u8]| {
+            let mut bench = Bench::start(scene);
+            bench.handle = 0.15;
+            bench.run(ticks(0.05));
+            assert!(bench.torque_mnm() < -10.0, "{scene}");
+            for selection in selections {
+                bench.request(Request::Select(*selection));
+                bench.run(ticks(0.05));
+            }
+            bench.torque_mnm()
+        };
+        let (again, anew) = (torque_after(&[scene]), torque_after(&[0, scene]));
+        assert!((again - anew).abs() < 0.1, "{scene}: {again} {anew}");
     }
 }
