@@ -180,8 +180,15 @@ impl Ammeters {
                 large: Amps::new(means[0]),
                 small: Amps::new(means[1]),
             },
-            mismatch: (state.disagreeing > self.patience).then_some(Stop::CurrentMismatch),
+            mismatch: self.mismatch(state),
         }
+    }
+
+    /// Whether the currents disagree with the commands, as in the [`Flow`] of the latest tick.
+    #[must_use]
+    #[inline]
+    pub fn mismatch(&self, state: &AmmetersState) -> Option<Stop> {
+        (state.disagreeing > self.patience).then_some(Stop::CurrentMismatch)
     }
 
     /// One tick with disabled amplifiers.

@@ -240,12 +240,10 @@ impl Safety {
         state: &mut SafetyState,
         findings: &Findings<S>,
     ) -> Order {
-        // Arming clears the cause that the monitor latched and the missed ticks. A present fault
-        // refuses it.
+        // Arming clears the latched cause and the missed ticks. A present fault refuses it.
         state.debt = 0;
         let now = Findings {
             monitor: None,
-            missed: 0,
             ..*findings
         };
         state.stop = match self.fault(state, &now) {
@@ -339,7 +337,7 @@ impl Safety {
             Stop::TickOverrun
         } else if !findings.amplifiers_ready && state.needs_amplifiers() {
             Stop::AmplifierFault
-        } else if let Some(cause) = findings.monitor {
+        } else if let Some(cause) = findings.monitor.or(findings.present) {
             cause
         } else if !findings.finite {
             Stop::NonFinite

@@ -2,7 +2,7 @@
 //! commanded.
 
 use estimator_core::Skip;
-use haptic_control::{Ammeters, AmmetersState, Currents, Flow};
+use haptic_control::{Ammeters, AmmetersState, Currents, Flow, Stop};
 
 use crate::config::{DEVICE, RATE};
 
@@ -32,6 +32,9 @@ pub trait Measure {
     /// that were in force. Without ammeters they are those commanded.
     fn update(&mut self, readings: &Self::Measured, commands: &Currents, enabled: bool) -> Flow;
 
+    /// Whether the currents disagree with the commands, as in the [`Flow`] of the latest tick.
+    fn mismatch(&self) -> Option<Stop>;
+
     /// Forgets a disagreement with the commands.
     fn restart(&mut self);
 
@@ -55,6 +58,10 @@ impl Measure for AmmetersState {
 
     fn update(&mut self, readings: &Currents, commands: &Currents, enabled: bool) -> Flow {
         AMMETERS.update(self, readings, enabled.then_some(commands))
+    }
+
+    fn mismatch(&self) -> Option<Stop> {
+        AMMETERS.mismatch(self)
     }
 
     fn restart(&mut self) {
@@ -86,6 +93,10 @@ impl Measure for Skip {
             currents: *commands,
             mismatch: None,
         }
+    }
+
+    fn mismatch(&self) -> Option<Stop> {
+        None
     }
 
     fn restart(&mut self) {}

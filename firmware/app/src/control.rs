@@ -254,9 +254,8 @@ impl Control {
             Decision::Drive
         } else {
             let findings = Findings {
-                monitor: (self.monitor.cause())
-                    .or(self.windings.overload())
-                    .or(self.found.take()),
+                monitor: self.monitor.cause().or(self.found.take()),
+                present: self.windings.overload().or(self.ammeter.mismatch()),
                 amplifiers_ready: !inputs.faults.contain(Faults::NOT_READY),
                 interlock: inputs.faults.contain(Faults::INTERLOCK),
                 clock_failure: inputs.faults.contain(Faults::CLOCK),

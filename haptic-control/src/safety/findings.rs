@@ -8,8 +8,10 @@ use crate::supply::SupplyFinding;
 /// Findings of one tick. `S` is the finding on the supply; [`Skip`] takes neither state nor code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings<S = Skip> {
-    /// Cause found by the monitor or by the windings.
+    /// Cause that a check has found and latched. A request to arm clears it.
     pub monitor: Option<Stop>,
+    /// Cause that is present in this tick, such as a winding that is too hot. It refuses a request to arm.
+    pub present: Option<Stop>,
     /// Both amplifiers are ready. Amplifiers may be not ready while they are disabled and for some
     /// time after they are enabled.
     pub amplifiers_ready: bool,
@@ -34,6 +36,7 @@ impl<S> Findings<S> {
     pub const fn well(supply: S) -> Self {
         Self {
             monitor: None,
+            present: None,
             amplifiers_ready: true,
             interlock: false,
             clock_failure: false,
@@ -50,6 +53,7 @@ impl<S: SupplyFinding> Findings<S> {
     pub(super) fn are_well(&self) -> bool {
         self.missed == 0
             && self.monitor.is_none()
+            && self.present.is_none()
             && self.amplifiers_ready
             && !self.interlock
             && !self.clock_failure

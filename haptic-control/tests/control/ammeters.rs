@@ -207,6 +207,30 @@ fn current_that_disagrees_is_replaced_by_the_command() {
 }
 
 #[test]
+fn reported_current_is_the_mean_since_the_last_report() {
+    let mut state = armed(&AMMETERS);
+    for readings in [[0.0, 0.25], [0.5, -0.25], [1.0, -0.75]] {
+        AMMETERS.update(&mut state, &currents(readings), Some(&currents(readings)));
+    }
+    assert_eq!(state.take_means(), currents([0.5, -0.25]));
+    assert_eq!(state.take_means(), currents([0.0, 0.0]));
+}
+
+#[test]
+fn mismatch_is_that_of_the_latest_tick() {
+    let mut state = armed(&AMMETERS);
+    let off = currents([1.0, 0.0]);
+    for _ in 0..2 * SPAN {
+        let flow = AMMETERS.update(&mut state, &off, Some(&Currents::default()));
+        assert_eq!(AMMETERS.mismatch(&state), flow.mismatch);
+    }
+    assert_eq!(AMMETERS.mismatch(&state), Some(Stop::CurrentMismatch));
+    // The amplifiers are disabled, and no current flows.
+    AMMETERS.update(&mut state, &Currents::default(), None);
+    assert_eq!(AMMETERS.mismatch(&state), None);
+}
+
+#[test]
 fn current_of_a_period_is_the_mean_of_its_ends() {
     let mut state = armed(&AMMETERS);
     for k in 0..20 {

@@ -1,6 +1,7 @@
 //! Tests of the control core, in one program because that is built sooner.
 
 mod ammeters;
+mod arming;
 mod balance;
 mod bench;
 mod codes;

@@ -120,6 +120,7 @@ fn stopped_by(stop: Stop) -> Vec<SafetyState> {
 fn both(a: Findings, b: Findings) -> Findings {
     Findings {
         monitor: a.monitor.or(b.monitor),
+        present: a.present.or(b.present),
         amplifiers_ready: a.amplifiers_ready && b.amplifiers_ready,
         interlock: a.interlock || b.interlock,
         clock_failure: a.clock_failure || b.clock_failure,
@@ -192,8 +193,7 @@ fn present_cause_refuses_arming_and_a_past_one_does_not() {
         let mut state = SAFETY.start(Stop::None);
         tick(&mut state, WELL, Some(Request::Select(3)));
         let order = tick(&mut state, findings, Some(Request::Arm));
-        // The monitor latches its cause and missed ticks are counted: both begin again with arm.
-        // Amplifiers may be not ready while they are disabled.
+        // What is latched or counted begins again with arm. Disabled amplifiers may be not ready.
         let over =
             findings.monitor.is_some() || findings.missed > 0 || stop == Stop::AmplifierFault;
         if over {

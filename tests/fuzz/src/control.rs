@@ -76,6 +76,7 @@ pub fn run(data: &[u8]) {
             monitor: MONITOR
                 .check(&mut monitor, &sample)
                 .or(BALANCE.check(&mut balance, &sample)),
+            present: None,
             amplifiers_ready: inputs != 0xFF,
             interlock: inputs == 0xFB,
             clock_failure: inputs == 0xFE,

@@ -38,10 +38,10 @@ fn device_whose_monitors_are_not_connected_cannot_be_armed() {
         for _ in 0..ticks(0.3) {
             bench.step(&CALM);
         }
-        bench.request(Request::Arm);
-        bench.run(1);
-        let is_enabled = bench.state().0.is_enabled();
-        assert_eq!(is_enabled, !<Ammeter as Measure>::WANTED, "{large} {small}");
+        for _ in 0..2 {
+            let is_enabled = bench.request(Request::Arm).is_some();
+            assert_eq!(is_enabled, !<Ammeter as Measure>::WANTED, "{large} {small}");
+        }
     }
 }
 

@@ -66,10 +66,14 @@ fn arming_does_not_cool_the_windings() {
     let cold = ticks_to_overload(&mut bench);
     for _ in 0..2 {
         bench.request(Request::Disarm);
-        bench.request(Request::Arm);
+        // A winding that is too hot refuses arming, in every tick.
+        assert_eq!(bench.request(Request::Arm), None);
+        assert_eq!(bench.state(), (Mode::Safe, Stop::Overload));
+        bench.wait(ticks(0.1));
+        assert!(bench.request(Request::Arm).is_some());
         bench.request(Request::Select(7));
         bench.run(ticks(0.1));
-        // A seventh of a second without current cools a winding of 14 s by a hundredth.
+        // A quarter of a second without current cools a winding of 14 s by two hundredths.
         let warm = ticks_to_overload(&mut bench);
         assert!(warm < cold / 10, "{warm} of {cold} ticks");
     }
