@@ -13,12 +13,15 @@ pub const FULL_SCALES: [Amps; 2] = [Amps::new(6.0), Amps::new(1.5)];
 /// are 1798.9.
 const REACHED_STEPS: f32 = 1798.0;
 
-/// Largest currents of the large and of the small motor that the buffered outputs can command. A loop that
-/// commands more does not know that it is saturated.
-pub const REACHES: [Amps; 2] = [
-    Amps::new(FULL_SCALES[0].get() * (REACHED_STEPS / STEPS)),
-    Amps::new(FULL_SCALES[1].get() * (REACHED_STEPS / STEPS)),
-];
+/// Largest currents of the large and of the small motor that the buffered outputs can command on a board that
+/// is not calibrated.
+pub const REACHES: [Amps; 2] = {
+    let [large, small] = FULL_SCALES;
+    match (DacScale::new(large), DacScale::new(small)) {
+        (Some(large), Some(small)) => [large.reach(), small.reach()],
+        _ => panic!("a full scale is above 0"),
+    }
+};
 
 /// A 12-bit DAC code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,6 +93,18 @@ impl DacScale {
         }
     }
 
+    /// Largest current that the buffered output can command with either sign; 0 if it cannot command its zero. A
+    /// loop that commands more does not know that it is saturated.
+    #[must_use]
+    pub const fn reach(&self) -> Amps {
+        let steps = REACHED_STEPS - (self.zero - DacCode::MIDDLE.0 as f32).abs();
+        if steps > 0.0 {
+            Amps::new(steps / self.per_amp)
+        } else {
+            Amps::ZERO
+        }
+    }
+
     /// The code of a current before it is rounded.
     #[must_use]
     pub const fn exact_code(&self, current: Amps) -> f32 {
@@ -145,6 +160,29 @@ mod tests {
             let beyond = reach + 2.0 * full.get() / 2047.0;
             assert!(volts(beyond) > 3.1 || volts(-beyond) < 0.2);
         }
+    }
+
+    /// At the ends of the ranges of the settings.
+    #[test]
+    fn reach_of_a_calibrated_channel_is_that_of_its_worse_sign() {
+        for (zero, gain) in [1848.0, 2048.0, 2248.0]
+            .into_iter()
+            .flat_map(|zero| [0.8, 1.0, 1.25].map(|gain| (zero, gain)))
+        {
+            let full = 6.0;
+            let scale = scale(full).calibrated(zero, gain).unwrap();
+            // From 0.2 V to 3.1 V.
+            let is_reached = |amps: f32| {
+                let volts = scale.exact_code(Amps::new(amps)) * 3.3 / 4096.0;
+                (0.2..=3.1).contains(&volts)
+            };
+            let reach = scale.reach().get();
+            assert!(is_reached(reach) && is_reached(-reach), "{zero} {gain}");
+            let beyond = reach + 2.0 * full * gain / 2047.0;
+            assert!(!is_reached(beyond) || !is_reached(-beyond), "{zero} {gain}");
+        }
+        let far = scale(6.0).calibrated(200.0, 1.0).unwrap();
+        assert_eq!(far.reach(), Amps::ZERO);
     }
 
     #[test]

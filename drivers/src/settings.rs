@@ -3,7 +3,7 @@
 use estimator_core::{Amps, Counts};
 use haptic_control::{CurrentScale, Currents};
 
-use crate::{REACHES, SaveError};
+use crate::{DacScale, FULL_SCALES, REACHES, SaveError};
 
 /// Version of the meaning of the settings. A new setting at the end of the list keeps the version.
 const VERSION: u16 = 1;
@@ -67,7 +67,7 @@ macro_rules! settings {
     };
 }
 
-/// Largest currents that the outputs can command, A.
+/// Largest currents that outputs with a nominal zero and gain can command, A.
 const MOST_LARGE: f32 = REACHES[0].get();
 const MOST_SMALL: f32 = REACHES[1].get();
 
@@ -241,14 +241,42 @@ impl Settings {
         is_admitted
     }
 
-    /// The scale of the current limits, with the largest currents at this bench.
+    /// The scale of the current limits, with the largest currents at this bench and of its calibrated outputs.
     #[must_use]
     pub fn current_scale(&self) -> CurrentScale {
+        let [large, small] = self.dac_scales();
+        let within = |limit, scale: DacScale| {
+            let (limit, reach) = (self.get(limit), scale.reach().get());
+            Amps::new(if limit < reach { limit } else { reach })
+        };
         let scale = CurrentScale::new(self.get(Setting::CurrentScale));
         scale.unwrap_or(CurrentScale::NONE).bounded(Currents {
-            large: Amps::new(self.get(Setting::LimitLarge)),
-            small: Amps::new(self.get(Setting::LimitSmall)),
+            large: within(Setting::LimitLarge, large),
+            small: within(Setting::LimitSmall, small),
         })
+    }
+
+    /// The calibrated scales of the outputs: large, small.
+    #[must_use]
+    pub fn dac_scales(&self) -> [DacScale; 2] {
+        const NOMINAL: [DacScale; 2] = {
+            let [large, small] = FULL_SCALES;
+            match (DacScale::new(large), DacScale::new(small)) {
+                (Some(large), Some(small)) => [large, small],
+                _ => panic!("a full scale is above 0"),
+            }
+        };
+        let [large, small] = NOMINAL;
+        // The ranges of the settings are within what a scale admits.
+        let calibrated = |scale: DacScale, zero, gain| {
+            scale
+                .calibrated(self.get(zero), self.get(gain))
+                .unwrap_or(scale)
+        };
+        [
+            calibrated(large, Setting::ZeroLarge, Setting::GainLarge),
+            calibrated(small, Setting::ZeroSmall, Setting::GainSmall),
+        ]
     }
 
     /// Whether the signs of encoders and currents have been verified.

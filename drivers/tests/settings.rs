@@ -1,7 +1,7 @@
 //! Settings as bytes, their ranges, and settings of other images.
 
 use drivers::{REACHES, SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
-use estimator_core::Counts;
+use estimator_core::{Amps, Counts};
 use haptic_control::{CurrentScale, Currents};
 
 /// Largest currents that the outputs command, A: 1798 of 2047 steps of 6 A and of 1.5 A.
@@ -94,6 +94,39 @@ fn limit_of_the_bench_bounds_its_motor_alone() {
     assert_eq!(scale.small(1.5), 0.75);
     assert!(settings.set(Setting::LimitSmall, 0.25));
     assert_eq!(settings.current_scale().small(1.5), 0.25);
+}
+
+/// At the ends of the ranges of zero and gain, with the whole current of a device that asks for the full scale.
+#[test]
+fn calibrated_outputs_bound_the_currents_to_those_that_they_reach() {
+    let ends = |setting: Setting| [setting.facts().least, setting.facts().most];
+    for channel in 0..2 {
+        let (zero, gain, full) = [
+            (Setting::ZeroLarge, Setting::GainLarge, 6.0),
+            (Setting::ZeroSmall, Setting::GainSmall, 1.5),
+        ][channel];
+        for (zero_codes, part) in ends(zero)
+            .into_iter()
+            .flat_map(|zero_codes| ends(gain).map(|part| (zero_codes, part)))
+        {
+            let mut settings = Settings::COMMISSIONED;
+            assert!(settings.set(zero, zero_codes) && settings.set(gain, part));
+            let scale = settings.current_scale();
+            let largest = [scale.large(6.0), scale.small(1.5)][channel];
+            // The output ends 0.2 V from both rails of 3.3 V, which is 1798 codes from the middle one.
+            let worse = (1798.0 - 200.0) / 2047.0 * full * part;
+            let wanted = worse.min(REACHES[channel].get());
+            assert!(
+                (largest - wanted).abs() < 1e-5,
+                "{zero_codes} {part}: {largest} A"
+            );
+            // The other channel is as it was.
+            let other = [scale.large(6.0), scale.small(1.5)][1 - channel];
+            assert_eq!(other, REACHES[1 - channel].get());
+            let code = settings.dac_scales()[channel].exact_code(Amps::new(largest));
+            assert!((2048.0 - code).abs() < 1798.1, "{code}");
+        }
+    }
 }
 
 #[test]

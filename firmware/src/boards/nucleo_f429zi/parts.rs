@@ -1,8 +1,6 @@
 //! Pins, peripherals and clocks, and how they start.
 
-use drivers::{
-    Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, FULL_SCALES, Setting, Settings,
-};
+use drivers::{Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, FULL_SCALES, Settings};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
@@ -68,26 +66,7 @@ struct Encoders {
 /// A channel of the DAC as a current command.
 struct DacCurrent<C> {
     channel: C,
-    /// Of a channel that is not calibrated.
-    nominal: DacScale,
     scale: DacScale,
-}
-
-impl<C> DacCurrent<C> {
-    /// A channel that is not calibrated.
-    fn new(channel: C, full_scale: Amps) -> Self {
-        let nominal = defmt::unwrap!(DacScale::new(full_scale));
-        Self {
-            channel,
-            nominal,
-            scale: nominal,
-        }
-    }
-
-    /// Takes zero and gain; nominal ones if the scale does not admit them.
-    fn calibrate(&mut self, zero: f32, gain: f32) {
-        self.scale = self.nominal.calibrated(zero, gain).unwrap_or(self.nominal);
-    }
 }
 
 impl<C: DacOut<u16>> CurrentOutput for DacCurrent<C> {
@@ -177,14 +156,7 @@ impl Board for Parts {
 
     fn calibrate(&mut self, settings: &Settings) {
         let (large, small) = self.amplifiers.outputs();
-        large.calibrate(
-            settings.get(Setting::ZeroLarge),
-            settings.get(Setting::GainLarge),
-        );
-        small.calibrate(
-            settings.get(Setting::ZeroSmall),
-            settings.get(Setting::GainSmall),
-        );
+        [large.scale, small.scale] = settings.dac_scales();
     }
 
     fn apply(&mut self, currents: Option<Currents>) {
@@ -277,9 +249,15 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
     small_dac.set_value(DacCode::MIDDLE.get());
     large_dac.enable();
     small_dac.enable();
-    let [large_scale, small_scale] = FULL_SCALES;
-    let large = DacCurrent::new(large_dac, large_scale);
-    let small = DacCurrent::new(small_dac, small_scale);
+    let [large_scale, small_scale] = settings.unwrap_or_default().dac_scales();
+    let large = DacCurrent {
+        channel: large_dac,
+        scale: large_scale,
+    };
+    let small = DacCurrent {
+        channel: small_dac,
+        scale: small_scale,
+    };
 
     let reference =
         REFERENCE.then(|| Encoder::new(Qei::new(chip.TIM1, (e.pe9, e.pe11), &mut rcc).release().0));
@@ -319,7 +297,7 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
         "the timer of the enables is not clocked like the core"
     );
     let source = if crystal { SWSR::Pll as u8 } else { NO_SOURCE };
-    let mut parts = Parts {
+    let parts = Parts {
         encoders,
         amplifiers,
         monitors,
@@ -327,7 +305,6 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
         tick: Tick::new(timer),
         clock: Tree { rcc, source },
     };
-    parts.calibrate(&settings.unwrap_or_default());
     let start = Start {
         watchdog: Guard {
             watchdog,
