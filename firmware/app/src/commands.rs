@@ -9,8 +9,12 @@ use crate::large::{Large, LargeEstimator as _};
 use crate::reports::Reports;
 use crate::scene::{self, Parameters, TORQUE_SCENE};
 
+/// Places of the queue of messages, of which one stays empty.
+const PLACES: usize = 8;
 /// Messages that wait for the control task, which takes three in ten ticks at 10 kHz.
-pub type Messages = Queue<Message, 8>;
+pub type Messages = Queue<Message, PLACES>;
+/// Largest number of messages that wait.
+pub const WAITING: usize = PLACES - 1;
 /// Largest number of bytes that one call takes.
 const BYTES: usize = 64;
 

@@ -1,12 +1,13 @@
 //! Certainty that the amplifiers are disabled, at the lowest priority.
 
+use crate::commands::WAITING;
 use crate::config::{AUTO_ARM, RATE_HZ};
 use crate::telemetry::{DEPTH, Record};
 
-/// Frames without an enabled amplifier after which a request to arm has been refused. The request waits
-/// less than a frame for the control task, and the frames of before the request are at most those that
-/// wait to be logged.
-const FRAMES: usize = DEPTH + 2;
+/// Frames without an enabled amplifier after which a request to arm has been refused. Fewer frames than
+/// [`DEPTH`] wait to be logged when the request is passed on. It is the last of the messages that wait for the
+/// control task, which takes at least one in the period of a frame.
+const FRAMES: usize = DEPTH + WAITING;
 /// Control ticks in which an image that arms by itself does so, 0.2 s.
 const ARMS: u32 = RATE_HZ / 5;
 

@@ -7,6 +7,7 @@ use crate::large::Choice;
 use crate::scene::Tuned;
 
 /// Inputs of a tick besides its sample.
+#[derive(Clone, Copy)]
 pub struct Inputs {
     /// Faults of the hardware.
     pub faults: Faults,

@@ -12,6 +12,7 @@ use firmware_app::index::{Indexing, Indices, Pulses, Reported};
 use firmware_app::supply::Reading;
 use firmware_app::telemetry::Record;
 use haptic_control::{Action, Currents, DualStage, Mode, Request, Stop};
+use heapless::spsc::Consumer;
 
 /// Counts per turn of the handle.
 const SMALL: f64 = 20_000.0;
@@ -97,13 +98,36 @@ impl Bench {
             .with_current(current)
     }
 
+    /// One tick that takes a message, if it takes one and one waits. Returns the record of its frame, if it
+    /// makes one.
+    pub(crate) fn step_with(&mut self, waiting: &mut Consumer<'_, Message>) -> Option<Record> {
+        self.tick(|control, takes_message| {
+            let message = if takes_message {
+                waiting.dequeue()
+            } else {
+                None
+            };
+            Inputs {
+                request: control.accept(message),
+                ..CALM
+            }
+        });
+        self.control.makes_frame().then(|| self.record())
+    }
+
     /// One tick with these inputs.
     pub(crate) fn step(&mut self, inputs: &Inputs) -> Option<Currents> {
+        self.tick(|_, _| *inputs)
+    }
+
+    /// One tick with the inputs that `inputs` makes of whether the tick takes a message.
+    fn tick(&mut self, inputs: impl FnOnce(&mut Control, bool) -> Inputs) -> Option<Currents> {
         let readings = readings(self.readings.unwrap_or(self.control.applied()));
         let flow = self.control.flow(&readings);
         let sample = self.sample(flow.currents.large);
-        self.control.check(&sample, &flow, &self.pulses);
+        let takes_message = self.control.check(&sample, &flow, &self.pulses);
         self.pulses = NO_PULSE;
+        let inputs = &inputs(&mut self.control, takes_message);
         let Outputs { currents, action } = self.control.step(&sample, inputs);
         self.action = action;
         if self.control.makes_frame() {
