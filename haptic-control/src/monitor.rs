@@ -60,6 +60,8 @@ pub struct MonitorState {
     push: (i32, u32),
     /// Position of the large motor when it last moved, and the number of driven slots since.
     resting: (Count, u32),
+    /// Whether the present slot is longer than others.
+    given_up: bool,
     cause: Option<Stop>,
 }
 
@@ -68,6 +70,23 @@ impl MonitorState {
     #[must_use]
     pub const fn cause(&self) -> Option<Stop> {
         self.cause
+    }
+
+    /// Gives up the present slot, for example because it misses ticks: at its end nothing is checked, and windows
+    /// are those of the other slots.
+    pub const fn give_up_slot(&mut self) {
+        self.given_up = true;
+    }
+
+    /// Moves the positions at the ends of slots, so that nothing has moved since the latest end.
+    fn pass_slot(&mut self, sample: &Sample) {
+        for (ends, now) in self.ends.iter_mut().zip([sample.count, sample.coupled]) {
+            let moved = now - ends.before(self.latest, 0);
+            for end in &mut ends.0 {
+                *end = *end + moved;
+            }
+        }
+        self.given_up = false;
     }
 }
 
@@ -128,6 +147,7 @@ impl Monitor {
             latest: 0,
             push: (0, 0),
             resting: (first.count, 0),
+            given_up: false,
             cause: None,
         }
     }
@@ -166,8 +186,12 @@ impl Monitor {
     #[cold]
     #[inline(never)]
     pub fn end_slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
-        let found = self.slot(state, sample);
-        state.cause = state.cause.or(found);
+        if state.given_up {
+            state.pass_slot(sample);
+        } else {
+            let found = self.slot(state, sample);
+            state.cause = state.cause.or(found);
+        }
         state.ticks = 0;
         state.currents = NO_CURRENT;
         state.cause

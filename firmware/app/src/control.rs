@@ -286,6 +286,7 @@ impl Control {
         if findings.missed > 0 {
             self.overruns = self.overruns.wrapping_add(findings.missed);
             self.balance.begin_after(self.phase.until(Phase::BALANCE));
+            self.monitor.give_up_slot();
         }
         let order = SAFETY.tick(&mut self.safety, &findings, request);
         if order.restart {

@@ -219,3 +219,47 @@ fn overspeed_is_detected_at_every_phase_of_the_window() {
         assert!((45..=56).contains(&(tick - begin)), "{begin}: {tick}");
     }
 }
+
+/// Three ticks are missed in the slot of a motor that a constant current has not reversed yet, and in that of a
+/// handle close to its limit. The displacement of the longer slot is no acceleration and no overspeed.
+#[test]
+fn slot_that_is_given_up_takes_no_part_in_a_window() {
+    let late = |k: u32| k + if k >= 143 { 3 } else { 0 };
+    let motions: [(&dyn Fn(u32) -> Sample, Stop); 2] = [
+        (
+            &|k| sample(0_u32.wrapping_sub(2 * late(k)), 0, 1.0),
+            Stop::RunawayDirection,
+        ),
+        (&|k| sample(0, 8 * late(k), 0.0), Stop::HandleOverspeed),
+    ];
+    for (motion, stop) in motions {
+        for gives_up in [false, true] {
+            let mut state = MONITOR.start(&motion(0));
+            for k in 1..1000 {
+                if gives_up && k == 143 {
+                    state.give_up_slot();
+                }
+                MONITOR.check(&mut state, &motion(k));
+            }
+            assert_eq!(state.cause(), (!gives_up).then_some(stop));
+        }
+    }
+}
+
+/// From the slots before and after the one that is given up.
+#[test]
+fn overspeed_is_detected_around_a_slot_that_is_given_up() {
+    let mut state = MONITOR.start(&sample(0, 0, 0.0));
+    let found = (1..1000_u32).find(|k| {
+        if *k == 143 {
+            state.give_up_slot();
+        }
+        let runaway = sample(0, 9 * k.saturating_sub(120), 0.0);
+        MONITOR.check(&mut state, &runaway).is_some()
+    });
+    // 400 counts take 45 ticks of slots that count.
+    assert!(
+        found.is_some_and(|k| (120 + 55..=120 + 66).contains(&k)),
+        "{found:?}"
+    );
+}

@@ -1,7 +1,7 @@
 use core::f64::consts::TAU;
 
 use drivers::{Command, Settings, encode};
-use firmware_app::config::AUTO_ARM;
+use firmware_app::config::{AUTO_ARM, RATE_HZ};
 use firmware_app::control::{Faults, Inputs, Message};
 use firmware_app::scene::FIRST;
 use haptic_control::{Mode, Request, Stop};
@@ -262,6 +262,25 @@ fn parameter_commands_take_effect_and_count_as_keep_alive() {
                 Some(Request::KeepAlive)
             );
         }
+    }
+}
+
+/// A handle at 29.5 rad/s, which the monitor stops at 30 rad/s, and a control task that misses two ticks in 50.
+#[test]
+fn missed_ticks_are_no_overspeed() {
+    let mut bench = Bench::new();
+    bench.request(Request::Arm);
+    bench.run(ticks(0.03));
+    let step = 29.5 / f64::from(RATE_HZ);
+    for k in 0..ticks(0.1) {
+        let missed = if k % 50 == 20 { 2 } else { 0 };
+        bench.handle += step * f64::from(1 + missed);
+        bench.step(&Inputs {
+            missed,
+            request: Some(Request::KeepAlive),
+            ..CALM
+        });
+        assert_eq!(bench.state(), (Mode::Armed, Stop::None), "{k}");
     }
 }
 
