@@ -51,7 +51,8 @@ pub enum Command {
     /// [`Rejected`](crate::link::Rejected). All commands before this one have been processed by then.
     /// It is no keep-alive.
     Identify,
-    /// Changes a setting until the next reset, at once. [`Command::Store`] keeps it.
+    /// Changes a setting until the next reset, at once; but
+    /// [`Setting::Estimator`](crate::Setting::Estimator) acts after a start alone. [`Command::Store`] keeps it.
     Set {
         /// Number of the [`Setting`](crate::Setting).
         setting: u8,
