@@ -1,7 +1,8 @@
 //! Every estimator at every rate behind one call that is never inlined, so that its instructions
 //! can be counted; the same functions run on the host, so that outputs can be compared bit for bit.
 //!
-//! To add one, add a line to `estimators.rs`.
+//! An estimator of the catalogue is here by its row there. A peer has a module in `peers` and a line in
+//! `estimators.rs`.
 #![no_std]
 
 mod estimators;
