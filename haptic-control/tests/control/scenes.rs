@@ -3,7 +3,7 @@
 use estimator_core::{Count, Hertz, Sample, preset};
 use haptic_control::{
     Controller, DesignError, Detents, FreeAir, Handle, HandleFor, Hold, Inertia, Off, RadPerS,
-    RadPerS2, Radians, Scene, Senses, SpringDamper, Texture, Torque, Viscous, Wall,
+    RadPerS2, Radians, Scene, SceneKind, Senses, SpringDamper, Texture, Torque, Viscous, Wall,
 };
 
 use crate::bench::{HANDLE, LARGE, RATE, RIG, motion};
@@ -186,6 +186,14 @@ fn texture_is_a_sine_from_the_first_tick() {
             assert!(error < 6e-3 * 0.0012, "{frequency} {k}: {torque} {wanted}");
         }
     }
+}
+
+/// All but the set-point of a torque and the excitation, which commands its currents itself.
+#[test]
+fn environments_are_the_scenes_that_render_by_themselves() {
+    let others = [SceneKind::Torque, SceneKind::Excite];
+    let all = SceneKind::ALL.into_iter();
+    assert!(SceneKind::environments().eq(all.filter(|kind| !others.contains(kind))));
 }
 
 #[test]

@@ -361,6 +361,26 @@ fn jump_of_a_change_decays_with_20_ms() {
     }
 }
 
+/// As of a device that is stopped: the next scene begins without a current.
+#[test]
+fn withheld_currents_fade_into_no_scene() {
+    let board = board();
+    let mut state = board.start(&at(0));
+    board.select(&mut state, usual(SceneKind::Hold), &at(0));
+    let before = run(&board, &mut state, &at(500), 3000).currents;
+    assert!(before.small.get() < -0.1 && state.applied() == before);
+    state.withhold();
+    assert_eq!(state.applied(), Currents::default());
+    board.select(&mut state, usual(SceneKind::Off), &at(500));
+    let after = board.step(&mut state, &at(500)).currents;
+    // What was still being faded in at the selection is less than 1 uA by now.
+    assert!(
+        [after.large, after.small]
+            .iter()
+            .all(|current| current.get().abs() < 1e-6)
+    );
+}
+
 #[test]
 fn parameters_of_another_scene_are_refused() {
     let board = board();
