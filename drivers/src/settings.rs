@@ -257,6 +257,8 @@ impl Settings {
     }
 
     /// The calibrated scales of the outputs: large, small.
+    // Rare, and no part of the control task's own code.
+    #[inline(never)]
     #[must_use]
     pub fn dac_scales(&self) -> [DacScale; 2] {
         const NOMINAL: [DacScale; 2] = {
