@@ -28,6 +28,8 @@ pub struct ModelBankState<const K: usize> {
     pub(super) noise: f32,
     /// Innovation of the edge, or shift by the count, before, counts.
     innovation: f32,
+    /// Innovation of the edge before that one, counts.
+    second_innovation: f32,
     /// How many in a row had the sign of the one before; -1 where it had the opposite one.
     signs: i8,
     /// Change of the count in the tick before if it was one of a single count, else 0.
@@ -87,6 +89,7 @@ impl<const K: usize> ModelBankState<K> {
             rung: FIRST_RUNG,
             noise,
             innovation: 0.0,
+            second_innovation: 0.0,
             signs: 0,
             heading: 0,
         }
@@ -150,7 +153,8 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by an edge and then by the quantisation interval of the count, and R by the
-    /// correlation of two innovations, and by their product if the tick before `moved` too.
+    /// correlation of the innovation with the two before, by its product with the one before if the tick before
+    /// `moved` too, and by the shift of the position.
     #[inline(always)]
     pub(super) fn correct_by_edge(
         &mut self,
@@ -159,11 +163,11 @@ impl<const K: usize> ModelBankState<K> {
         moved: bool,
     ) -> Judged<K> {
         let mut innovations = [Innovation::default(); K];
-        let (mut error, mut variance) = (0.0, 0.0);
+        let (mut error, mut variance, mut shift) = (0.0, 0.0, 0.0);
         for i in 0..K {
             let member = &mut self.members[i];
             innovations[i] = member.correct_by_edge(edge, self.noise);
-            member.correct_by_interval(ends, self.noise);
+            shift += self.weights[i] * member.correct_by_interval(ends, self.noise).shift;
             error += self.weights[i] * innovations[i].error;
             variance += self.weights[i] * innovations[i].variance;
         }
@@ -180,7 +184,7 @@ impl<const K: usize> ModelBankState<K> {
                 0.5 * error * error * per_variance,
             );
         }
-        self.learn_noise_of_edges(error, variance, moved);
+        self.learn_noise_of_edges(error, variance, shift, moved);
         Judged {
             likelihoods,
             variance: middle,
@@ -274,6 +278,7 @@ impl<const K: usize> ModelBankState<K> {
         self.rung = FIRST_RUNG;
         self.noise = noise;
         self.innovation = 0.0;
+        self.second_innovation = 0.0;
         self.signs = 0;
         Likelihood::CERTAIN
     }
@@ -358,6 +363,7 @@ impl ModelBankState<3> {
             rung: self.rung + first as u32,
             noise: self.noise,
             innovation: self.innovation,
+            second_innovation: self.second_innovation,
             signs: self.signs,
             heading: self.heading,
         }

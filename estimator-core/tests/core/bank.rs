@@ -6,6 +6,7 @@ mod definition;
 mod driven;
 mod noise;
 mod noisy_counts;
+mod stamps;
 mod uneven;
 
 use estimator_core::{

@@ -1,6 +1,7 @@
 //! The noise of the measurements, which the bank learns: innovations of an optimal filter are white (Mehra 1970).
 
 use super::ModelBankState;
+use crate::branch::unlikely;
 use crate::design::const_math::limited;
 use crate::interval::smaller;
 
@@ -14,6 +15,14 @@ const LARGEST_OF_COUNT: f32 = 1e4;
 
 /// Change of R by an edge, in R.
 const GAIN_OF_EDGE: f32 = 0.1;
+
+/// Part of the innovation before the last one in the correlation of an edge: errors of the lines of an encoder with
+/// two channels come again after four edges, and their innovations have the opposite sign after two.
+const SECOND: f32 = 0.5;
+
+/// Square of a shift by the count, against the innovation of an edge, above which the stamp contradicts the count,
+/// counts².
+const CONTRADICTION: f32 = 0.5;
 
 /// Change of R in the product of two innovations or shifts, and by a count in R by the size of a shift.
 const GAIN_OF_PRODUCT: f32 = 0.02;
@@ -29,8 +38,9 @@ const LARGEST_OF_TURN: f32 = 0.25;
 /// Part of a decrease of R that a count has which stays: it says little of the noise.
 const STAYING: f32 = 0.03;
 
-/// Shifts of one sign in a row from which on large ones are a motion that the members lag, and R after each, in R.
-const LAGGING: i8 = 8;
+/// Shifts or innovations of one sign in a row that white ones seldom are. Large shifts are then a motion that the
+/// members lag, and R after each is `FALL` times R.
+const ONE_SIDED: i8 = 8;
 const FALL: f32 = 0.85;
 
 impl<const K: usize> ModelBankState<K> {
@@ -63,12 +73,22 @@ impl<const K: usize> ModelBankState<K> {
         (product, alternated)
     }
 
-    /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the one
+    /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the two
     /// before in parts of R, which finds an R that is nearly right, and by a product below 0, which raises one that
     /// is far too small. Between edges that are ticks apart the motion has changed: their product says nothing.
+    /// The `shift` of the position by the count, if it is against innovations of one sign for many edges: so far the
+    /// stamps are off.
     #[inline(always)]
-    pub(super) fn learn_noise_of_edges(&mut self, error: f32, variance: f32, moved: bool) {
-        let correlation = limited(error * self.innovation / variance, 1.0);
+    pub(super) fn learn_noise_of_edges(
+        &mut self,
+        error: f32,
+        variance: f32,
+        shift: f32,
+        moved: bool,
+    ) {
+        let before = self.innovation + SECOND * self.second_innovation;
+        self.second_innovation = self.innovation;
+        let correlation = limited(error * before / variance, 1.0);
         let (product, alternated) = self.product(error);
         let mut noise = self.noise * (1.0 - GAIN_OF_EDGE * correlation);
         if moved && alternated && product < 0.0 {
@@ -76,6 +96,12 @@ impl<const K: usize> ModelBankState<K> {
         }
         // Both ends are constants: the panic of `clamp` is removed.
         self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
+        let square = shift * shift;
+        let contradicts = error * shift < 0.0 && square > CONTRADICTION;
+        if contradicts && self.signs >= ONE_SIDED && square > self.noise {
+            unlikely();
+            self.noise = smaller(square, LARGEST_OF_COUNT);
+        }
     }
 
     /// Changes R by the `shift` of a position whose variance with its noise is `variance`. A noise of less than half
@@ -86,7 +112,7 @@ impl<const K: usize> ModelBankState<K> {
         let is_new = self.still == 0;
         let (product, alternated) = self.product(shift);
         let size = smaller(shift * shift / variance, LARGEST) - USUAL;
-        let noise = if size > 0.0 && self.signs >= LAGGING {
+        let noise = if size > 0.0 && self.signs >= ONE_SIDED {
             self.noise * FALL
         } else {
             let gain = match size < 0.0 && !is_new {

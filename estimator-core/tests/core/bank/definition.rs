@@ -23,6 +23,7 @@ pub(super) struct Definition {
     stamps: bool,
     noise: f64,
     innovation: f64,
+    second_innovation: f64,
     /// How many innovations in a row had the sign of the one before, and how many the opposite one.
     same: u32,
     opposite: u32,
@@ -138,6 +139,7 @@ impl Definition {
             stamps: edges.is_some(),
             noise: if edges.is_some() { 1e-3 } else { 1e-5 },
             innovation: 0.0,
+            second_innovation: 0.0,
             same: 0,
             opposite: 0,
             change: 0.0,
@@ -179,6 +181,7 @@ impl Definition {
         let members = self.filters.len();
         let mut likelihoods = Vec::new();
         let (mut error, mut variance) = (0.0, 0.0);
+        let mut shifted = 0.0;
         let (mut nearest, mut last) = (f64::INFINITY, 0.0);
         for (i, filter) in self.filters.iter_mut().enumerate() {
             let q = LOWEST * 10f64.powi((self.rung + i) as i32);
@@ -217,6 +220,7 @@ impl Definition {
             }
             nearest = nearest.min(off);
             let k = filter.p.column(0) / deviation;
+            shifted += self.weights[i] * deviation * shift;
             if edge.is_none() {
                 last = k[0] * shift;
                 error += self.weights[i] * deviation * shift;
@@ -227,6 +231,8 @@ impl Definition {
             likelihoods.push(likelihood.unwrap_or(probability));
         }
         if edge.is_some() || !is_exact {
+            let of_two = self.innovation + 0.5 * self.second_innovation;
+            let of_two = (error * of_two / variance).clamp(-1.0, 1.0);
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
             let is_first = correlation < 0.0 && self.opposite == 0;
             let product = if is_first {
@@ -243,6 +249,7 @@ impl Definition {
                 true => (0, self.opposite + 1),
                 false => (self.same + 1, 0),
             };
+            self.second_innovation = self.innovation;
             self.innovation = error;
             self.noise = if edge.is_some() {
                 let added = if moved_before {
@@ -250,7 +257,12 @@ impl Definition {
                 } else {
                     0.0
                 };
-                (self.noise * (1.0 - 0.1 * correlation) + added).clamp(3e-4, 0.1)
+                let noise = (self.noise * (1.0 - 0.1 * of_two) + added).clamp(3e-4, 0.1);
+                let contradicts = error * shifted < 0.0 && shifted * shifted > 0.5;
+                match contradicts && self.same >= 8 {
+                    true => noise.max(shifted * shifted).min(1e4),
+                    false => noise,
+                }
             } else {
                 let size = (error * error / variance).min(1.5) - 0.5;
                 let gain = if size < 0.0 && !moved {

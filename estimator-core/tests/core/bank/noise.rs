@@ -87,7 +87,7 @@ fn noisy_stamps_do_no_harm() {
         let clean = Seen::new(rate, 4000, 0.0, &|t| counts * hand(t));
         for (deviation, share) in [
             (0.1, 0.2),
-            (0.3, 0.35),
+            (0.3, 0.25),
             (1.0, 0.12),
             (3.0, 0.06),
             (10.0, 0.06),
