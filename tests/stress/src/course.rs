@@ -211,6 +211,13 @@ impl Course {
         stretch
     }
 
+    /// Continues with another stretch of motion, of this number of ticks.
+    pub fn move_on_for(&mut self, length: u32) -> Stretch {
+        let stretch = Stretch::any(&mut self.draws);
+        self.go(stretch, length);
+        stretch
+    }
+
     /// Continues with a constant velocity, counts per tick, for this number of ticks.
     pub const fn slope(&mut self, velocity: f64, length: u32) {
         self.go(Stretch::Slope(velocity), length);
