@@ -6,6 +6,8 @@ use super::*;
 use crate::sample::Edge;
 use crate::units::ClockTicks;
 
+mod definition;
+
 const CLOCK: Hertz = Hertz(1e8);
 const RATE: Hertz = Hertz(1000.0);
 /// Deviations of the boundaries of an electrical turn of three Hall sensors, counts.
