@@ -36,9 +36,10 @@ use crate::units::Hertz;
 /// make P indefinite. Edges that contradict the counts can make s grow without limit. Where
 /// hᵀ P h + c S is above 65536², the square of the observer's range, the parameters stay and s
 /// restarts at zero, so D cannot underflow. The standard deviations at the start and the limits of the
-/// parameter errors are those of the range R, [`Narrow`] or [`Wide`](super::Wide). The standard
-/// deviations grow by a tenth of those at the start in a second of motion, and never exceed them.
-/// Below 0.5 rad/s friction hides the other parameters, and all stay.
+/// parameter errors are those of the range R, [`Narrow`] or [`Wide`](super::Wide). Each update
+/// adds to each variance 0.1² of that at the start for a second since the update before, whether the motor moved or
+/// rested meanwhile; no variance exceeds that at the start. Below 0.5 rad/s friction hides the other parameters, and all
+/// stay.
 ///
 /// In the range [`Wide`](super::Wide) the model can be unlike the device. Three more rules hold there:
 /// ```text
@@ -95,7 +96,7 @@ impl AdaptiveState {
     }
 }
 
-/// Growth of a standard deviation in a second of motion, in parts of [`Range::PRIOR`].
+/// Standard deviation of the random walk of a parameter in a second, rest included, in parts of [`Range::PRIOR`].
 const WALK: f64 = 0.1;
 
 /// Largest relative error of the damping that does not indicate a moving start.

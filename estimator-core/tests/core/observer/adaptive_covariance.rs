@@ -217,3 +217,37 @@ fn variances_of_the_parameters_at_rest_stay_below_the_prior() {
     let after = counts.parameter_errors(&state);
     assert!((after.damping - before.damping).abs() < 0.3, "{after:?}");
 }
+
+/// The variances grow with the time since the last update, rest included: by (0.1)² of those at the start in a
+/// second, at the first innovation that is used again.
+#[test]
+fn variances_grow_by_the_time_since_the_last_update_at_rest_too() {
+    let rate = Hertz(100.0);
+    let prior = [0.35, 0.6, 0.35].map(|deviation: f64| deviation * deviation);
+    let counts = ObserverDesign::new(&CoupledMotor::DCX35L, rate, &UNSURE).adaptive();
+    let counts = counts.build().expect("valid");
+    let (samples, _) = modelled(rate.0, 3.0, 0.3, CoupledMotor::DCX35L);
+    // The variances after the first update that follows this many seconds of rest.
+    let after = |seconds: f64| {
+        let mut state = counts.start(&Sample::default());
+        for sample in &samples {
+            counts.update(&mut state, sample);
+        }
+        let rest = samples[samples.len() - 1].with_current(Amps::ZERO);
+        for _ in 0..(seconds * rate.0) as u32 {
+            counts.update(&mut state, &rest);
+        }
+        let before = *state.adaptation().diagonal();
+        let mut moved = rest;
+        while *state.adaptation().diagonal() == before {
+            moved.count = moved.count + Counts(9);
+            counts.update(&mut state, &moved.with_current(Amps::new(0.2)));
+        }
+        state.adaptation().diagonal().map(f64::from)
+    };
+    let (soon, late) = (after(1.0), after(11.0));
+    for i in 0..3 {
+        let grown = (late[i] - soon[i]) / prior[i];
+        assert!((grown - 0.1).abs() < 0.02, "{i}: {grown}");
+    }
+}
