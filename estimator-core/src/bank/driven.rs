@@ -66,6 +66,18 @@ impl<I> DrivenBankState<I> {
         self.probability
     }
 
+    /// The bank that the input does not drive.
+    #[must_use]
+    pub const fn plain(&self) -> &ModelBankState<3> {
+        &self.plain
+    }
+
+    /// The bank that the input drives; it does not run while the probability is 0.
+    #[must_use]
+    pub const fn driven(&self) -> &ModelBankState<2> {
+        &self.driven
+    }
+
     /// The state of the input.
     #[must_use]
     pub const fn input(&self) -> &I {

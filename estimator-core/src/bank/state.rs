@@ -95,6 +95,18 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
+    /// Weights of the members after an update; their sum is 1.
+    #[must_use]
+    pub const fn weights(&self) -> &[f32; K] {
+        &self.weights
+    }
+
+    /// P_00, P_01, P_02, P_11, P_12 and P_22 of each member, of position, velocity and acceleration in counts and ticks.
+    #[must_use]
+    pub fn covariances(&self) -> [[f32; 6]; K] {
+        self.members.each_ref().map(|member| member.covariance)
+    }
+
     /// The weighted mean of `part` of each member.
     #[inline(always)]
     fn mean(&self, part: impl Fn(&Member) -> f32) -> f32 {

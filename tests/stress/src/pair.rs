@@ -78,6 +78,38 @@ impl<E, C, S, M: Corrections> Of<'_, E, core::ObserverState<C, S, M, ()>> {
     }
 }
 
+impl<E, const K: usize> Of<'_, E, core::ModelBankState<K>> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        bank_fault(self.1)
+    }
+}
+
+impl<E, I> Of<'_, E, core::DrivenBankState<I>> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        let probability = self.1.probability();
+        if !(0.0..=1.0).contains(&probability) {
+            return Some("probability of the driven bank out of its range");
+        }
+        bank_fault(self.1.plain()).or_else(|| bank_fault(self.1.driven()))
+    }
+}
+
+/// What is wrong with the state of a bank after an update.
+fn bank_fault<const K: usize>(state: &core::ModelBankState<K>) -> Option<&'static str> {
+    let weights = state.weights();
+    let sum: f64 = weights.iter().map(|weight| f64::from(*weight)).sum();
+    // Each weight is rounded twice.
+    let rounding = K as f64 * f64::from(f32::EPSILON);
+    if !(weights.iter().all(|weight| *weight >= 0.0) && (sum - 1.0).abs() <= rounding) {
+        return Some("weights of a bank not a distribution");
+    }
+    let definite = state.covariances().into_iter().all(|member| {
+        let [p00, p01, p02, p11, p12, p22] = member;
+        is_positive_definite(&[[p00, p01, p02], [p01, p11, p12], [p02, p12, p22]])
+    });
+    (!definite).then_some("covariance of a bank not positive definite")
+}
+
 /// `U D Uᵀ` is positive definite if D is positive and U is made of numbers. D is never above the
 /// prior.
 impl<A, B, K, R: core::Range, C, S, M: Corrections>
@@ -220,8 +252,8 @@ fn twin_sample(shown: &Shown) -> twin::Sample {
 mod tests {
     use estimator_core::{
         AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveQuantisedObserver, CountObserver,
-        EdgeObserver, EndFit, Foaw, KalmanMotor, KalmanTriple, QuantisedObserver,
-        VelocityEstimator,
+        EdgeObserver, EndFit, Foaw, Imm, ImmAdaptiveEdge, ImmEdge, ImmMotor, ImmPair, KalmanMotor,
+        KalmanTriple, QuantisedObserver, VelocityEstimator,
     };
 
     // [`General`](super::General) is not in scope here, so that only a method of the type compiles.
@@ -240,5 +272,6 @@ mod tests {
         have!(fault: KalmanTriple, KalmanMotor);
         have!(fault: CountObserver, EdgeObserver, QuantisedObserver);
         have!(fault: AdaptiveObserver, AdaptiveEdgeObserver, AdaptiveQuantisedObserver);
+        have!(fault: Imm, ImmPair, ImmEdge, ImmMotor, ImmAdaptiveEdge);
     }
 }
