@@ -35,7 +35,7 @@ pub enum Search {
     Fixed(f64),
 }
 
-/// Largest window of FOAW on the host, intervals. Firmware has a ring of the length that it needs.
+/// Largest window of any estimator on the host, intervals. Firmware has a ring of the length that it needs.
 pub const WINDOW_LIMIT: usize = 128;
 
 /// Ranges of the parameters of rows. The row gives the name of the parameter.
@@ -52,14 +52,14 @@ impl Parameter {
         scaling: Scaling::Bandwidth(Powers::ONE_POLE),
     };
 
-    /// Frequency of the three equal poles of a tracking loop.
+    /// Frequency of the equal poles of a tracking loop; the scaling is that of three poles.
     pub const BANDWIDTH: Self = Self {
         meaning: "frequency of the loop's poles, at most half the rate",
         scaling: Scaling::Bandwidth(Powers::THREE_POLES),
         ..Self::CUTOFF
     };
 
-    /// Largest window of FOAW.
+    /// Largest number of intervals in a window.
     pub const WINDOW: Self = Self {
         name: "",
         unit: "intervals",
