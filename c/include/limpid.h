@@ -14,8 +14,9 @@
  * - Parameters are constants. State is yours: in static memory, on the stack, one per encoder. To
  *   reset an estimator, start it again. An interrupt may use one state while a task uses another.
  * - Pointers must be valid, aligned and not null. A state must have been started.
- * - No function allocates, locks, fails, or calls a library of floating-point functions.
- * - A function that ends in _design exists in the library for computers alone.
+ * - No function allocates, locks, or calls a library of floating-point functions. None fails but _design.
+ * - A function that ends in _design exists in the library for computers alone. It refuses wrong values with a
+ *   status.
  */
 
 #ifndef LIMPID_H

@@ -6,6 +6,8 @@
  *   limpid::imm filter(limpid_imm_parameters);
  *
  *   float counts_per_tick = filter.update(encoder_count);     // every millisecond
+ *
+ * A class keeps a reference to its parameters, which must outlive it: a temporary does not compile.
  */
 #ifndef LIMPID_ESTIMATORS_H
 #define LIMPID_ESTIMATORS_H
@@ -18,6 +20,7 @@ namespace limpid {
     class name {                                                                               \
     public:                                                                                    \
         explicit name(const limpid_##name##_t &parameters) : parameters(parameters) {}         \
+        explicit name(const limpid_##name##_t &&) = delete;                                    \
                                                                                                \
         /* Sets the state to rest at this sample. The first update does so too. */             \
         void start(const limpid_sample_t &first)                                               \

@@ -6,6 +6,7 @@
  *   MagneticSensorI2C encoder(AS5600_I2C);
  *   LimpidSensor sensor(encoder, 4096);      // counts per revolution: four per line of an encoder
  *
+ *   encoder.init();                          // before the sensor, which reads it
  *   sensor.init();
  *   motor.linkSensor(&sensor);
  *
@@ -64,9 +65,10 @@ public:
     /* Velocity at the latest update, rad/s. */
     float getVelocity() override { return velocity; }
 
-    /* Standard deviation of the velocity according to the filter, rad/s. */
+    /* Standard deviation of the velocity according to the filter, rad/s; 0 before init(). */
     float getVelocityDeviation() const
     {
+        if (!started) return 0.0f;
         const float deviation = limpid_std_dev(limpid_imm_variance(&limpid_imm_parameters, &state));
         return LIMPID_RAD_PER_S(deviation, counts_per_rev, LIMPID_IMM_RATE_HZ);
     }

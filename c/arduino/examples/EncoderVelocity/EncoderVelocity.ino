@@ -10,7 +10,12 @@ const uint32_t COUNTS_PER_REV = 1200;  // both edges of one input: two per line 
 volatile uint32_t count = 0;
 limpid::imm filter(limpid_imm_parameters);
 
-void edge()
+// Where the flash is shared with a file system, an interrupt runs from memory.
+#ifndef IRAM_ATTR
+#define IRAM_ATTR
+#endif
+
+void IRAM_ATTR edge()
 {
     count += (digitalRead(PIN_A) == digitalRead(PIN_B)) ? 1 : -1;
 }
@@ -27,12 +32,20 @@ void loop()
 {
     static uint32_t due = micros();
     static int ticks = 0;
-    if ((int32_t)(micros() - due) < 0) return;
+    const int32_t late = (int32_t)(micros() - due);
+    if (late < 0) return;
     due += 1000;
 
     noInterrupts();
     const uint32_t now = count;
     interrupts();
+
+    // After a loop that was blocked for more than a period, the counts of several periods would be those of one.
+    if (late >= 1000) {
+        due = micros() + 1000;
+        filter.start(limpid_count(now));
+        return;
+    }
 
     const float velocity = LIMPID_RAD_PER_S(filter.update(now), COUNTS_PER_REV, LIMPID_IMM_RATE_HZ);
     if (++ticks == 100) {

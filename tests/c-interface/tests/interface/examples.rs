@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use c_interface::{CORTEX_M4F, Compiler, compiled, folder, missing};
@@ -80,11 +80,16 @@ fn the_library_for_arduino_has_an_object_per_processor_and_its_examples_compile(
     }
 }
 
-/// A motion: time in µs and the true angle and velocity at it, rad and rad/s. The loop is irregular: 150 to
-/// 600 µs.
+/// A motion: time in µs and the true angle and velocity at it, rad and rad/s, of the velocities and seconds
+/// given. The loop is irregular: 150 to 600 µs.
 fn motion(velocities: &[(f64, f64)]) -> Vec<(u64, f64, f64)> {
+    motion_from(1_000_000, velocities)
+}
+
+/// A [`motion`] that begins at this time, µs.
+fn motion_from(mut now: u64, velocities: &[(f64, f64)]) -> Vec<(u64, f64, f64)> {
     let mut random = 1u32;
-    let (mut now, mut angle) = (1_000_000u64, 0.3);
+    let mut angle = 0.3;
     let mut motion = Vec::new();
     for &(velocity, seconds) in velocities {
         let end = now + (seconds * 1e6) as u64;
@@ -102,7 +107,8 @@ fn motion(velocities: &[(f64, f64)]) -> Vec<(u64, f64, f64)> {
 /// The angle within a turn, in counts, as a sensor of SimpleFOC shows it.
 type Within = fn(f64) -> f64;
 
-/// Velocity and standard deviation of the sensor at each time of a motion, with 4096 counts per turn.
+/// Velocity and standard deviation of the sensor at each time of a motion, with 4096 counts per turn. Both are 0
+/// before the sensor is initialised.
 fn sensed(program: &Path, motion: &[(u64, f64, f64)], within: Within) -> Vec<[f64; 2]> {
     let counts = 4096.0 / std::f64::consts::TAU;
     let mut input = String::new();
@@ -123,6 +129,8 @@ fn sensed(program: &Path, motion: &[(u64, f64, f64)], within: Within) -> Vec<[f6
         .expect("no panic")
         .expect("the program reads everything");
     let text = String::from_utf8(output.stdout).expect("text");
+    let (before, text) = text.split_once('\n').expect("lines");
+    assert_eq!(before, "0 0");
     text.lines()
         .map(|line| {
             let mut numbers = line
@@ -133,14 +141,12 @@ fn sensed(program: &Path, motion: &[(u64, f64, f64)], within: Within) -> Vec<[f6
         .collect()
 }
 
-/// The sensor of SimpleFOC itself divides the angle by the time since it last changed and keeps its
-/// velocity for ever when the motor has stopped.
-#[test]
-fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
+/// A program in C++ with the library for Arduino, in a folder of its own, unless there is no compiler.
+fn program(source: &str, name: &str) -> Option<PathBuf> {
     if missing(CPP11.program) {
-        return;
+        return None;
     }
-    let folder = folder("sensor");
+    let folder = folder(name);
     write(
         &folder.join("LimpidMilliseconds.h"),
         milliseconds().expect("a design").as_bytes(),
@@ -148,12 +154,14 @@ fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
     .expect("target");
     let library = build(&COMPUTER).expect("the library");
     let library = library.to_str().expect("a path in UTF-8");
-    let program = folder.join("sensor");
+    let program = folder.join("program");
     let stub = format!("-I{}", here("c/arduino_stub"));
     let sources = format!("-I{}", here("../../c/arduino/src"));
+    let example = format!("-I{}", here("../../c/arduino/examples/EncoderVelocity"));
     let more = [
         &*stub,
         &sources,
+        &example,
         "-x",
         "none",
         library,
@@ -161,8 +169,102 @@ fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
         "-ldl",
         "-lm",
     ];
-    compiled(&CPP11, "sensor.cpp", &folder, &more, &program);
+    compiled(&CPP11, source, &folder, &more, &program);
+    Some(program)
+}
 
+/// A loop that was blocked for 50 periods has the counts of 50 periods, which are not those of one.
+#[test]
+fn example_has_no_velocity_beyond_that_of_the_encoder_after_a_blocked_loop() {
+    let Some(program) = program("encoder_velocity.cpp", "encoder-velocity") else {
+        return;
+    };
+    let output = Command::new(program).output().expect("the program starts");
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let velocities: Vec<f64> = text
+        .lines()
+        .map(|line| line.parse().expect("a number"))
+        .collect();
+    // A thousand counts a second, 1200 a revolution.
+    let truth = 1000.0 / 1200.0 * std::f64::consts::TAU;
+    assert!(velocities.len() > 150, "{velocities:?}");
+    // Soon after a start the estimate is still on its way from rest.
+    assert!(
+        velocities.iter().all(|v| (0.0..1.2 * truth).contains(v)),
+        "{truth}: {velocities:?}"
+    );
+    let near = velocities
+        .iter()
+        .filter(|v| (**v - truth).abs() < 0.02 * truth);
+    assert!(
+        near.count() * 10 > 7 * velocities.len(),
+        "{truth}: {velocities:?}"
+    );
+}
+
+/// The clock of Arduino counts microseconds modulo 2^32, and a period is exact however large the clock is.
+#[test]
+fn velocity_is_the_same_at_a_wrap_of_the_clock() {
+    let Some(program) = program("sensor.cpp", "sensor-clock") else {
+        return;
+    };
+    let velocities = [(3.0, 2.0), (-40.0, 2.0)];
+    let within: Within = |counts| counts.rem_euclid(4096.0);
+    let early = sensed(&program, &motion(&velocities), within);
+    let wrapping = motion_from(u64::from(u32::MAX) - 2_000_000, &velocities);
+    let late = sensed(&program, &wrapping, within);
+    let same = early
+        .iter()
+        .zip(&late)
+        .take_while(|(early, late)| early == late);
+    assert_eq!(same.count(), late.len(), "the first update that differs");
+}
+
+/// A loop can be faster than the sensor and its clock: updates 5 µs apart wait for one at 20 µs.
+#[test]
+fn updates_in_quick_succession_are_taken_once_in_20_us() {
+    let Some(program) = program("sensor.cpp", "sensor-quick") else {
+        return;
+    };
+    let within: Within = |counts| counts.rem_euclid(4096.0);
+    let omega = 3.0;
+    let at = |step: u64| (1_000_000 + step, 0.3 + omega * step as f64 * 1e-6, omega);
+    let quick: Vec<_> = (0..400_000).map(|k| at(5 * k)).collect();
+    let every_20_us: Vec<_> = quick.iter().copied().step_by(4).collect();
+    let sensed_quick = sensed(&program, &quick, within);
+    let sensed_20_us = sensed(&program, &every_20_us, within);
+    for (k, quick) in sensed_quick.iter().enumerate() {
+        assert_eq!(*quick, sensed_20_us[k / 4], "update {k}");
+    }
+    let last = sensed_20_us[sensed_20_us.len() - 1][0];
+    assert!((last - omega).abs() < 0.1, "{last}");
+}
+
+/// A class keeps a reference to its parameters, so that a temporary would be gone at the first update.
+#[test]
+fn class_refuses_parameters_that_are_a_temporary() {
+    if missing(CPP11.program) {
+        return;
+    }
+    let folder = folder("temporary");
+    write(
+        &folder.join("LimpidMilliseconds.h"),
+        milliseconds().expect("a design").as_bytes(),
+    )
+    .expect("target");
+    let sources = format!("-I{}", here("../../c/arduino/src"));
+    let more = ["-c", &*sources];
+    compiled(&CPP11, "temporary.cpp", &folder, &more, &folder.join("x.o"));
+}
+
+/// The sensor of SimpleFOC itself divides the angle by the time since it last changed and keeps its
+/// velocity for ever when the motor has stopped.
+#[test]
+fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
+    let Some(program) = program("sensor.cpp", "sensor") else {
+        return;
+    };
     // A sensor that is initialised again knows no motion.
     let mut again = motion(&[(3.0, 0.2)]);
     again.push((0, again[again.len() - 1].1, 0.0));
