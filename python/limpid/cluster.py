@@ -44,7 +44,7 @@ def _process(program: str | None, arguments: Sequence[str], folder: str) -> subp
     words = [sys.executable, "-m", "limpid"] if program is None else [program]
     # The tasks share the cores of a worker, not the threads of one process. A module in the working folder is not
     # the package.
-    variables = {"RAYON_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"} | os.environ
+    variables = os.environ | {"RAYON_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
     cwd = folder if os.path.isdir(folder) else None
     return subprocess.run([*words, *arguments], cwd=cwd, env=variables, capture_output=True, text=True)
 

@@ -201,6 +201,17 @@ def test_module_in_the_working_folder_is_not_the_package(client, folders):
     assert "off" in cluster.run(client, TINY, "page", shards=1).text
 
 
+def test_processes_have_one_thread_and_no_module_of_the_working_folder(monkeypatch, tmp_path):
+    """Whatever the environment of the worker says."""
+    monkeypatch.setenv("RAYON_NUM_THREADS", "7")
+    monkeypatch.setenv("PYTHONSAFEPATH", "")
+    monkeypatch.setenv("LIMPID_TEST", "kept")
+    done = cluster._process("env", [], str(tmp_path))
+    variables = dict(line.split("=", 1) for line in done.stdout.splitlines() if "=" in line)
+    assert (variables["RAYON_NUM_THREADS"], variables["PYTHONSAFEPATH"]) == ("1", "1")
+    assert variables["LIMPID_TEST"] == "kept"
+
+
 def test_package_is_the_command_line(host_sim, tmp_path):
     for words, status in [(["scenarios"], 0), (["merge", "none.jsonl"], 2), (["--version"], 0)]:
         ours, theirs = (
