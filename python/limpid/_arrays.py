@@ -42,15 +42,20 @@ def as_number(value: Any, name: str, unit: str) -> float:
     return number
 
 
+def _is_integer(value: Any) -> bool:
+    # A bool is an int of Python.
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+
+
 def as_counts(values: IntLike, name: str) -> NDArray[np.uint32]:
     """Integers of any type modulo 2^32."""
+    if isinstance(values, (list, tuple)) and all(map(_is_integer, values)):
+        # Of integers beyond 63 bits NumPy would make floats, which do not have all of their digits.
+        values = np.array(values, dtype=object)
     array = one_dimensional(values, name)
     if array.size == 0:
         raise ValueError(f"{name}: is empty; pass at least one row")
-    # A bool is an int of Python.
-    if array.dtype.kind == "O" and all(
-        isinstance(value, (int, np.integer)) and not isinstance(value, bool) for value in array
-    ):
+    if array.dtype.kind == "O" and all(map(_is_integer, array)):
         array = np.array([int(value) & 0xFFFFFFFF for value in array], dtype=np.uint32)
     if array.dtype.kind not in "iu":
         raise ValueError(

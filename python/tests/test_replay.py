@@ -135,6 +135,15 @@ def test_counts_wrap_at_2_to_the_32():
         np.testing.assert_array_equal(limpid.replay(narrow.view(np.int32), 1000).velocity, expected)
 
 
+def test_lists_of_integers_of_any_size_are_counts():
+    for values in ([2**63, 2**63 + 1, 7], (0, 2**64 + 5), [-(2**63) - 1, np.uint64(2**63), -1], [1, -2]):
+        expected = [int(value) % 2**32 for value in values]
+        assert limpid.Recording(values, 1000).counts.tolist() == expected
+    for values in ([1, 2.5], [True, False], ["1", "2"]):
+        with pytest.raises(ValueError, match="counts: has the type"):
+            limpid.Recording(values, 1000)
+
+
 def test_arrays_need_not_be_contiguous(signals):
     counts, current = signals["counts"], signals["current"]
     table = np.stack([counts, counts], axis=1)
