@@ -29,29 +29,50 @@ impl Stop {
     }
 }
 
+/// Waits until `is_finished`. The error is that of a handler of a signal, as after Ctrl-C.
+fn wait(py: Python<'_>, is_finished: impl Fn() -> bool) -> PyResult<()> {
+    let mut pause = Duration::from_micros(100);
+    while !is_finished() {
+        py.detach(|| thread::sleep(pause));
+        pause = LOOK.min(2 * pause);
+        py.check_signals()?;
+    }
+    Ok(())
+}
+
 /// Runs `work` in a thread of its own. After Ctrl-C it ends at its next call of [`Stop::look`].
 pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
 ) -> PyResult<T> {
     let stop = Stop::default();
-    let mut interrupt = None;
-    let ended = thread::scope(|scope| {
+    let (waited, ended) = thread::scope(|scope| {
         let worker = scope.spawn(|| work(&stop));
-        let mut pause = Duration::from_micros(100);
+        let waited = wait(py, || worker.is_finished());
+        stop.0.store(waited.is_err(), Ordering::Relaxed);
         while !worker.is_finished() {
-            py.detach(|| thread::sleep(pause));
-            pause = LOOK.min(2 * pause);
-            if let (None, Err(error)) = (&interrupt, py.check_signals()) {
-                interrupt = Some(error);
-                stop.0.store(true, Ordering::Relaxed);
-            }
+            py.detach(|| thread::sleep(LOOK));
         }
-        worker.join()
+        (waited, worker.join())
     });
-    match (interrupt, ended) {
-        (Some(error), _) => Err(error),
-        (None, Ok(done)) => done.map_err(value_error),
-        (None, Err(panic)) => resume_unwind(panic),
-    }
+    waited?;
+    outcome(ended)
+}
+
+/// Runs `work`, which cannot look for a stop, in a thread of its own. After Ctrl-C the call ends at once, and
+/// the thread goes on to the end of its work or of the process; what it returns is dropped.
+pub(crate) fn abandonable<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> PyResult<T> {
+    let worker = thread::spawn(work);
+    wait(py, || worker.is_finished())?;
+    outcome(worker.join())
+}
+
+/// What a thread returned; its panic goes on.
+fn outcome<T>(ended: thread::Result<Result<T, Failure>>) -> PyResult<T> {
+    ended
+        .unwrap_or_else(|panic| resume_unwind(panic))
+        .map_err(value_error)
 }

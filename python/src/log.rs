@@ -8,8 +8,8 @@ use pyo3::types::PyDict;
 use recordings::arguments::{ColumnOptions, Counted, RecordingOptions};
 use recordings::log::{Log, short_name};
 use recordings::recording::Recording;
-use terminal::failure::Failure;
 
+use crate::background::abandonable;
 use crate::device::{DeviceFile, counts_source, device};
 use crate::error::{check_file, in_python, value_error};
 use crate::integer::CountsPerRev;
@@ -36,10 +36,12 @@ pub(crate) fn read_log<'py>(
         resample,
         ..RecordingOptions::default()
     };
-    let source = counts_source(device.as_ref(), counts_per_rev);
+    let source = counts_source(device.as_ref(), counts_per_rev).map(str::to_owned);
     let of_file = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
     check_file(py, &path)?;
-    let read = py.detach(|| -> Result<_, Failure> {
+    let name = short_name(&path).to_owned();
+    let (mut recording, stated, assumed, counts_per_rev) = abandonable(py, move || {
+        let source = source.as_deref();
         let log = Log::open(&path)?;
         let Counted {
             device,
@@ -51,15 +53,14 @@ pub(crate) fn read_log<'py>(
         let assumed = (source.is_none() && !is_stated)
             .then(|| format!("{counts} counts/rev assumed: give counts_per_rev or device"));
         Ok((recording, lines, assumed, counts))
-    });
-    let (mut recording, stated, assumed, counts_per_rev) = read.map_err(value_error)?;
+    })?;
     let notes = stated
         .into_iter()
         .chain(std::mem::take(&mut recording.notes))
         .chain(assumed);
     let notes: Vec<_> = notes.map(|note| in_python(&note)).collect();
     let fields = fields(py, recording)?;
-    fields.set_item("name", short_name(&path))?;
+    fields.set_item("name", name)?;
     fields.set_item("counts_per_rev", counts_per_rev)?;
     fields.set_item("notes", notes)?;
     Ok(fields)

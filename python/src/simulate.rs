@@ -12,7 +12,7 @@ use recordings::log::{Log, short_name};
 use recordings::recording::Capture;
 use terminal::failure::Failure;
 
-use crate::background::interruptible;
+use crate::background::abandonable;
 use crate::device::{DeviceFile, device};
 use crate::error::{check_file, in_python, value_error};
 use crate::integer::{CountsPerRev, Integer};
@@ -57,12 +57,14 @@ pub(crate) fn simulate<'py>(
         seconds,
         seed,
     };
-    let recording = interruptible(py, |_| match scenario {
-        Some(name) => run.scenario(name),
-        None => run.scene(scene, hand, every),
+    let name = scenario.or(scene).unwrap_or("excite");
+    let of = [scenario, scene].map(|name| name.map(str::to_owned));
+    let recording = abandonable(py, move || match of {
+        [Some(name), _] => run.scenario(&name),
+        [None, scene] => run.scene(scene.as_deref(), hand, every),
     })?;
     let fields = fields(py, recording)?;
-    fields.set_item("name", scenario.or(scene).unwrap_or("excite"))?;
+    fields.set_item("name", name)?;
     fields.set_item("counts_per_rev", counts_per_rev)?;
     Ok(fields)
 }
@@ -102,9 +104,10 @@ pub(crate) fn coarsen<'py>(
         },
         device,
     };
-    let recording = interruptible(py, |_| wanted.of_file(&path))?;
+    let name = short_name(&path).to_owned();
+    let recording = abandonable(py, move || wanted.of_file(&path))?;
     let fields = fields(py, recording)?;
-    fields.set_item("name", short_name(&path))?;
+    fields.set_item("name", name)?;
     fields.set_item("counts_per_rev", counts_per_rev)?;
     Ok(fields)
 }
@@ -122,7 +125,8 @@ pub(crate) fn decode<'py>(
     counts_per_rev: Option<CountsPerRev>,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_file(py, &path)?;
-    let mut recording = interruptible(py, |_| {
+    let name = short_name(&path).to_owned();
+    let mut recording = abandonable(py, move || {
         let capture = Capture::new(&columns, lines, row_rate, checked_rate(rate)?)?;
         let log = Log::open(&path)?;
         capture.decode(log.reader()?, log.name())
@@ -130,7 +134,7 @@ pub(crate) fn decode<'py>(
     let notes = std::mem::take(&mut recording.notes);
     let notes: Vec<_> = notes.iter().map(|note| in_python(note)).collect();
     let fields = fields(py, recording)?;
-    fields.set_item("name", short_name(&path))?;
+    fields.set_item("name", name)?;
     fields.set_item("counts_per_rev", counts_per_rev.map(CountsPerRev::get))?;
     fields.set_item("notes", notes)?;
     Ok(fields)

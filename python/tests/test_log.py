@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import csv
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -169,3 +172,33 @@ def test_logs_of_different_encoders_are_refused():
         with pytest.raises(ValueError, match="logs: 90 and None state different counts per revolution, 90 and none"):
             limpid.recommend(logs, device=device)
     limpid.recommend(logs, counts_per_rev=90)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "limpid.read_log('endless.csv')",
+        "limpid.coarsen('endless.csv', 256, rate=500)",
+        "limpid.decode('endless.csv', rate=1000, counts_per_rev=4096)",
+        "limpid.simulate(scene='wall', rate=1e5, seconds=200)",
+        "limpid.simulate('track', rate=1e5, seconds=200)",
+    ],
+)
+def test_interrupt_ends_a_call_whose_work_goes_on(call, tmp_path):
+    """A pipe that nobody writes has no end; of a simulation the thread is still there after the call."""
+    os.mkfifo(tmp_path / "endless.csv")
+    program = f"""
+import os, signal, limpid
+threads = lambda: len(os.listdir("/proc/self/task"))
+before = threads()
+signal.signal(signal.SIGALRM, signal.default_int_handler)
+signal.setitimer(signal.ITIMER_REAL, 0.1)
+try:
+    {call}
+except KeyboardInterrupt:
+    print("interrupted", threads() - before)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert (done.stdout, done.stderr, done.returncode) == ("interrupted 1\n", "", 0)
