@@ -29,7 +29,8 @@ class Estimator(_Estimator):
 
     Rows give the same bits one by one, in blocks of any size, and in :func:`replay`, which finds the modulus of counts
     that wrap at a revolution or at 16 bits; here it is an argument. Methods may be called
-    from several threads: a call waits for the one before. :meth:`process` releases the interpreter's lock.
+    from several threads: a call waits for the one before. :meth:`process` releases the interpreter's lock. A handler of a
+    signal that interrupts :meth:`process` cannot use the same estimator: a RuntimeError says so.
 
     Parameters
     ----------
@@ -42,7 +43,8 @@ class Estimator(_Estimator):
     parameters, presets, device
         As of :func:`replay`.
     modulus
-        Counts at which an absolute encoder wraps, for example 4096; without it, counts wrap at 2^32.
+        Counts at which an absolute encoder wraps, for example 4096; without it, counts wrap at 2^32. With ``coupled``,
+        of each that wraps: ``{"counts": 4096, "coupled": 65536}``.
     varying
         Whether rows come at uneven times; then each row has ``dt``, the time since the row before.
 

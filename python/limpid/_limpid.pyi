@@ -60,7 +60,7 @@ class Estimator:
         parameters: Mapping[str, float] | None = None,
         presets: _Path | None = None,
         device: _Device | None = None,
-        modulus: int | None = None,
+        modulus: int | dict[str, int] | None = None,
         varying: bool = False,
     ) -> Estimator: ...
     @property

@@ -1,30 +1,29 @@
 //! An estimator that takes rows one by one or in blocks.
 
 use std::collections::BTreeMap;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
+use std::thread::{self, ThreadId};
 
 use catalogue::estimators::{Estimator as AnyEstimator, Kind, Reports};
-use estimator_core::{Count, WrapError};
 use numpy::PyReadonlyArray1;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use recordings::recording::{after, boundary};
 use simulation::trace::Trace;
-use terminal::failure::Failure;
 
 use crate::columns::{copied, edge, edges};
 use crate::device::{Built, DeviceFile, Named, PresetsFile, device, named};
 use crate::error::{in_python, value_error};
-use crate::integer::{CountsPerRev, Integer};
+use crate::integer::CountsPerRev;
+use crate::modulus::{Moduli, Modulus, Unwrapped};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
 /// What an [`Estimator`] changes.
 #[derive(Clone)]
 struct Running {
     stream: Stream,
-    /// The last count of the large encoder, unwrapped.
-    unwrapped: Option<Count>,
+    /// The last counts of both encoders, unwrapped.
+    unwrapped: Unwrapped,
     /// Reports of the latest row: standard deviation, acceleration, ratio of the damping.
     latest: [Option<f32>; 3],
 }
@@ -40,9 +39,11 @@ pub(crate) struct Estimator {
     counts_per_rev: u32,
     values: BTreeMap<&'static str, f64>,
     notes: Vec<String>,
-    modulus: Option<u32>,
+    moduli: Moduli,
     varying: bool,
     running: Mutex<Running>,
+    /// The thread that holds `running` and may call handlers of signals meanwhile.
+    runner: Mutex<Option<ThreadId>>,
 }
 
 impl Estimator {
@@ -54,9 +55,7 @@ impl Estimator {
         look: impl FnMut() -> PyResult<()>,
     ) -> PyResult<Reports> {
         lack(self.kind, &trace, self.kind.name).map_err(value_error)?;
-        if let Some(modulus) = self.modulus {
-            unwrap(&mut trace, &mut running.unwrapped, modulus).map_err(value_error)?;
-        }
+        self.moduli.unwrap(&mut trace, &mut running.unwrapped)?;
         let reports = running.stream.run(&trace, look)?;
         let last = |column: &Option<Vec<f32>>| column.as_ref()?.last().copied();
         running.latest = [
@@ -70,9 +69,25 @@ impl Estimator {
     fn started(estimator: &AnyEstimator) -> Running {
         Running {
             stream: Stream::new(estimator.clone()),
-            unwrapped: None,
+            unwrapped: Unwrapped::default(),
             latest: [None; 3],
         }
+    }
+
+    /// Refuses a call in a handler of a signal that has interrupted this estimator: it would wait for itself.
+    fn refuse_own_handler(&self) -> PyResult<()> {
+        if *locked(self.runner.lock()) == Some(thread::current().id()) {
+            return Err(PyRuntimeError::new_err(
+                "estimator: busy; the handler of a signal has interrupted its process(): use another Estimator there",
+            ));
+        }
+        Ok(())
+    }
+
+    /// What changes, once no other thread holds it.
+    fn running(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Running>> {
+        self.refuse_own_handler()?;
+        Ok(locked(self.running.lock_py_attached(py)))
     }
 
     /// The periods before rows at `dt` s from one to the next.
@@ -91,30 +106,6 @@ impl Estimator {
             ))),
         }
     }
-}
-
-/// Unwraps the counts of the large encoder and the boundaries of its edges.
-fn unwrap(trace: &mut Trace, last: &mut Option<Count>, modulus: u32) -> Result<(), Failure> {
-    // The state is changed once all rows are good.
-    let mut latest = *last;
-    for (k, count) in trace.counts_large.iter_mut().enumerate() {
-        let raw = *count;
-        let signed = i64::from(raw as i32);
-        let refused =
-            |error: WrapError| format!("row {k}: counts={signed} with modulus={modulus}: {error}");
-        // A counter may count from its modulus down to 0 below zero.
-        if !(-i64::from(modulus)..i64::from(modulus)).contains(&signed) {
-            return Err(refused(WrapError::Raw).into());
-        }
-        let next = after(latest, raw, modulus).map_err(refused)?;
-        latest = Some(next);
-        *count = next.0;
-        if let Some(Some(edge)) = trace.edges.as_mut().map(|edges| &mut edges[k]) {
-            edge.boundary = boundary(edge.boundary, raw, next.0, modulus);
-        }
-    }
-    *last = latest;
-    Ok(())
 }
 
 /// A count modulo 2^32.
@@ -157,16 +148,14 @@ impl Estimator {
         parameters: Option<&Bound<'_, PyAny>>,
         presets: Option<PresetsFile>,
         device: Option<DeviceFile>,
-        modulus: Option<Integer>,
+        modulus: Option<Modulus>,
         varying: bool,
     ) -> PyResult<Self> {
         let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
         let parameters = parameters.map_or(Ok(Named::new()), named)?;
         let built = Built::new(estimator, &device, rate, presets.as_ref(), &parameters);
         let built = built.map_err(value_error)?;
-        let modulus = modulus
-            .map(|modulus| modulus.within("modulus", &(2..=1 << 31), ", for example 4096"))
-            .transpose()?;
+        let moduli = modulus.map_or(Ok(Moduli::default()), Modulus::checked)?;
         if varying && !built.kind.varying_period {
             let able = Kind::all().iter().filter(|kind| kind.varying_period);
             let able: Vec<_> = able.map(|kind| kind.name).collect();
@@ -183,8 +172,9 @@ impl Estimator {
             values: built.named(),
             notes: built.notes.iter().map(|note| in_python(note)).collect(),
             estimator: built.estimator,
-            modulus,
+            moduli,
             varying,
+            runner: Mutex::new(None),
         })
     }
 
@@ -220,25 +210,26 @@ impl Estimator {
 
     /// Standard deviation of the latest velocity, rad/s; None if the estimator reports none.
     #[getter]
-    fn std_dev(&self, py: Python<'_>) -> Option<f32> {
-        locked(self.running.lock_py_attached(py)).latest[0]
+    fn std_dev(&self, py: Python<'_>) -> PyResult<Option<f32>> {
+        Ok(self.running(py)?.latest[0])
     }
 
     /// Acceleration at the latest row, rad/s^2; None if the estimator reports none.
     #[getter]
-    fn acceleration(&self, py: Python<'_>) -> Option<f32> {
-        locked(self.running.lock_py_attached(py)).latest[1]
+    fn acceleration(&self, py: Python<'_>) -> PyResult<Option<f32>> {
+        Ok(self.running(py)?.latest[1])
     }
 
     /// Learned damping of the coupler over the assumed one; None if it is not learned.
     #[getter]
-    fn damping_ratio(&self, py: Python<'_>) -> Option<f32> {
-        locked(self.running.lock_py_attached(py)).latest[2]
+    fn damping_ratio(&self, py: Python<'_>) -> PyResult<Option<f32>> {
+        Ok(self.running(py)?.latest[2])
     }
 
     /// Forgets all rows: the next row is the first one.
-    fn reset(&self, py: Python<'_>) {
-        *locked(self.running.lock_py_attached(py)) = Self::started(&self.estimator);
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        *self.running(py)? = Self::started(&self.estimator);
+        Ok(())
     }
 
     /// Takes the next row and returns the velocity there, rad/s.
@@ -283,8 +274,7 @@ impl Estimator {
             edges,
             ..Trace::default()
         };
-        let mut running = locked(self.running.lock_py_attached(py));
-        let reports = self.run(&mut running, row, || Ok(()))?;
+        let reports = self.run(&mut *self.running(py)?, row, || Ok(()))?;
         Ok(reports.velocity[0])
     }
 
@@ -316,11 +306,14 @@ impl Estimator {
             edges: edges(edge_age.as_ref(), edge_boundary.as_ref())?,
             ..Trace::default()
         };
+        self.refuse_own_handler()?;
         let reports = py.detach(|| {
             let mut running = locked(self.running.lock());
             let before = running.clone();
+            let runner = Runner::enter(&self.runner);
             let look = || Python::attach(|py| py.check_signals());
             let reports = self.run(&mut running, rows, look);
+            drop(runner);
             if reports.is_err() {
                 // The rows can be given again.
                 *running = before;
@@ -335,6 +328,22 @@ impl Estimator {
             "limpid.Estimator('{}', rate={}, counts_per_rev={})",
             self.kind.name, self.rate_hz, self.counts_per_rev
         )
+    }
+}
+
+/// The thread that runs, until this is dropped.
+struct Runner<'a>(&'a Mutex<Option<ThreadId>>);
+
+impl<'a> Runner<'a> {
+    fn enter(runner: &'a Mutex<Option<ThreadId>>) -> Self {
+        *locked(runner.lock()) = Some(thread::current().id());
+        Self(runner)
+    }
+}
+
+impl Drop for Runner<'_> {
+    fn drop(&mut self) {
+        *locked(self.0.lock()) = None;
     }
 }
 

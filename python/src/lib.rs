@@ -19,6 +19,7 @@ mod estimator;
 mod integer;
 mod log;
 mod logs;
+mod modulus;
 mod replay;
 mod scores;
 mod simulate;

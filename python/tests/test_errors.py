@@ -138,6 +138,8 @@ def test_estimator_refuses():
         ({"rate": 0.0}, "rate=0: must be positive"),
         ({"estimator": "nobody"}, "no estimator 'nobody'"),
         ({"modulus": 1}, "modulus=1: must be from 2 to 2147483648, for example 4096"),
+        ({"modulus": {"coupled": 1}}, "modulus=1: must be from 2 to 2147483648, for example 4096"),
+        ({"modulus": {"small": 4096}}, "modulus: has the key 'small'; pass counts or coupled"),
         ({"estimator": "foaw-end-fit", "varying": True}, "foaw-end-fit needs a constant period"),
     ):
         with pytest.raises(ValueError) as error:

@@ -81,6 +81,31 @@ def test_absolute_encoder_is_unwrapped_with_its_edges(signals):
         assert estimator.update(one.pop("counts"), **one) == whole.velocity[row]
 
 
+def test_both_encoders_are_unwrapped(signals):
+    columns = needed("observer", signals)
+    columns["coupled"] = columns["coupled"] % 2500
+    columns["counts"] = columns["counts"] % 4096
+    moduli = {"counts": 4096, "coupled": 2500}
+    whole = limpid.Estimator("observer", rate=1000).process(**needed("observer", signals))
+    estimator = limpid.Estimator("observer", rate=1000, modulus=moduli)
+    half = {column: values[:30_000] for column, values in columns.items()}
+    same(estimator.process(**half), whole, slice(0, 30_000))
+    for row in range(30_000, 30_500):
+        one = {column: values[row] for column, values in columns.items()}
+        assert estimator.update(one.pop("counts"), **one) == whole.velocity[row]
+
+
+def test_modulus_says_whether_coupled_wraps(signals):
+    columns = {column: values[:3000] for column, values in needed("observer", signals).items()}
+    whole = limpid.Estimator("observer", rate=1000).process(**columns)
+    columns["counts"] = columns["counts"] % 4096
+    with pytest.raises(ValueError, match="modulus=4096: does not say where coupled wraps"):
+        limpid.Estimator("observer", rate=1000, modulus=4096).process(**columns)
+    same(limpid.Estimator("observer", rate=1000, modulus={"counts": 4096}).process(**columns), whole)
+    with pytest.raises(ValueError, match="row 1: coupled=9 with modulus=5"):
+        limpid.Estimator("observer", modulus={"coupled": 5}).process([1, 2], coupled=[1, 9], current=[0, 0])
+
+
 def test_integers_of_any_size_and_type_are_counts():
     estimator = limpid.Estimator("finite-difference", rate=1000)
     scale = float(np.float32(2 * np.pi * 1000 / 4096))
@@ -156,7 +181,7 @@ def test_other_threads_run_meanwhile(signals):
         time.sleep(0.001)
         counted += 1
     thread.join()
-    # With the lock held, this thread would count once or twice.
+    # With the lock held, this thread would count once or twice. The other one takes more than a second.
     assert counted > 10
 
 
@@ -208,6 +233,34 @@ def test_interrupted_rows_can_be_given_again(signals):
         signal.signal(signal.SIGALRM, old)
     few = rest[:5000]
     np.testing.assert_array_equal(again.process(few).velocity, once.process(few).velocity)
+
+
+def test_handler_of_a_signal_is_refused_the_estimator_that_it_interrupts(signals):
+    counts = np.tile(signals["counts"], 60)
+    estimator, other = (limpid.Estimator("robust-exact", 1000) for _ in range(2))
+    found = []
+
+    def handler(*_):
+        found.append(other.update(1))
+        for use in (
+            lambda: estimator.update(1),
+            lambda: estimator.process([1]),
+            lambda: estimator.std_dev,
+            estimator.reset,
+        ):
+            with pytest.raises(RuntimeError, match="estimator: busy; the handler of a signal"):
+                use()
+        found.append(None)
+
+    old = signal.signal(signal.SIGALRM, handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    try:
+        interrupted = estimator.process(counts)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, old)
+    assert found == [0, None]
+    same(interrupted, limpid.Estimator("robust-exact", 1000).process(counts))
 
 
 def test_counter_of_16_bits_has_the_bits_of_replay_with_its_modulus():
