@@ -29,8 +29,8 @@ class Estimator(_Estimator):
 
     Rows give the same bits one by one, in blocks of any size, and in :func:`replay`, which finds the modulus of counts
     that wrap at a revolution or at 16 bits; here it is an argument. Methods may be called
-    from several threads: a call waits for the one before. :meth:`process` releases the interpreter's lock. A handler of a
-    signal that interrupts :meth:`process` cannot use the same estimator: a RuntimeError says so.
+    from several threads: a call waits for the one before. :meth:`process` releases the interpreter's lock. A handler of
+    a signal that interrupts :meth:`process` cannot use the same estimator: a RuntimeError says so.
 
     Parameters
     ----------

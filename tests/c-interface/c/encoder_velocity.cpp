@@ -1,5 +1,5 @@
-// The example for Arduino at a constant velocity of 1000 counts per second, in a loop of 100 us that is blocked for 50 ms
-// in each 630 ms. Standard output has the velocities that it prints, rad/s.
+// The example for Arduino at a constant velocity of 1000 counts per second, in a loop of 100 us that is blocked for
+// 50 ms in each 630 ms. Standard output has the velocities that it prints, rad/s.
 #include <stdio.h>
 
 #include "Arduino.h"
