@@ -241,7 +241,13 @@ def test_handler_of_a_signal_is_refused_the_estimator_that_it_interrupts(signals
     found = []
 
     def handler(*_):
-        found.append(other.update(1))
+        try:
+            estimator.std_dev
+        except RuntimeError:
+            pass
+        else:
+            # Before or after the run.
+            return
         for use in (
             lambda: estimator.update(1),
             lambda: estimator.process([1]),
@@ -250,16 +256,16 @@ def test_handler_of_a_signal_is_refused_the_estimator_that_it_interrupts(signals
         ):
             with pytest.raises(RuntimeError, match="estimator: busy; the handler of a signal"):
                 use()
-        found.append(None)
+        found.append(other.update(1))
 
     old = signal.signal(signal.SIGALRM, handler)
-    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
     try:
         interrupted = estimator.process(counts)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, old)
-    assert found == [0, None]
+    assert set(found) == {0}
     same(interrupted, limpid.Estimator("robust-exact", 1000).process(counts))
 
 
