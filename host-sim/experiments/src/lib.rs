@@ -5,6 +5,7 @@
 pub mod closed_loop;
 pub mod compare;
 pub mod designed;
+pub mod distinct;
 pub mod feel;
 pub mod identify;
 pub mod limit;

@@ -15,6 +15,7 @@ use super::palette::Palette;
 use super::section::{Section, explained, explanation, joined};
 use super::text::{number, plant, rate, share};
 use catalogue::parameters::PlantKind;
+use experiments::distinct::distinct;
 use experiments::transparency::{Design, Outcome, REFERENCE, Run, Swept};
 use haptic_control::SceneKind;
 use maud::html;
@@ -80,16 +81,8 @@ impl ClosedLoop {
             .filter(|o| uses_velocity(o))
             .flat_map(|o| &o.runs);
         let swept = self.swept.iter().flat_map(|swept| &swept.runs);
-        let mut names: Vec<&str> = Vec::new();
-        for name in runs
-            .map(|run| run.controlled_by)
-            .chain(swept.map(|(name, _)| *name))
-        {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
+        let names = runs.map(|run| run.controlled_by);
+        distinct(names.chain(swept.map(|(name, _)| *name)))
     }
 
     /// Velocity sources of figures with many curves: without the steady-state filters, whose curves

@@ -3,6 +3,7 @@
 use super::causes::{Bar, Block, EXPLANATION, stacked};
 use super::page::Printout;
 use super::text::rate;
+use experiments::distinct::distinct;
 use experiments::feel::Felt;
 
 /// The page: a figure for each scene, then the printed tables.
@@ -10,14 +11,8 @@ use experiments::feel::Felt;
 /// # Errors
 /// If a figure cannot be drawn.
 pub fn feel(all: &[Felt], threshold_mn: f64, printout: &Printout) -> Result<String, String> {
-    let mut scenes = Vec::new();
-    for felt in all {
-        if !scenes.contains(&felt.case.scene) {
-            scenes.push(felt.case.scene);
-        }
-    }
     let mut figures = Vec::new();
-    for scene in scenes {
+    for scene in distinct(all.iter().map(|felt| felt.case.scene)) {
         let of: Vec<&Felt> = all.iter().filter(|felt| felt.case.scene == scene).collect();
         let blocks = of.chunk_by(|a, b| a.case.rate_hz == b.case.rate_hz);
         let blocks: Vec<Block> = blocks

@@ -1,6 +1,7 @@
 //! Cases in groups of equal rate and plant, with all scenarios and estimators.
 
 use super::{CaseReport, EstimatorRow, ReportInput};
+use experiments::distinct::distinct;
 use scoring::score::Score;
 
 /// The cases of one rate and plant.
@@ -70,13 +71,7 @@ fn scenarios<'a>(cases: &[&'a CaseReport]) -> Vec<Scenario<'a>> {
 
 /// One row for each estimator, in order of appearance.
 fn merge(rows: &[&EstimatorRow]) -> Vec<EstimatorRow> {
-    let mut names: Vec<&str> = Vec::new();
-    for row in rows {
-        if !names.contains(&row.estimator.as_str()) {
-            names.push(&row.estimator);
-        }
-    }
-    names
+    distinct(rows.iter().map(|row| row.estimator.as_str()))
         .into_iter()
         .map(|name| {
             mean(

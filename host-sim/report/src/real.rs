@@ -9,7 +9,8 @@ use super::page::Printout;
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::text::rate;
-use experiments::real::pool::{distinct, on};
+use experiments::distinct::distinct;
+use experiments::real::pool::on;
 use experiments::real::run::{Outcome, Row};
 
 /// Errors that the figures show, % of finite difference; a larger one leaves the frame.

@@ -6,6 +6,7 @@ use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::style::Style;
 use super::text::rate;
+use experiments::distinct::distinct;
 use experiments::zwidth::rows::ZwidthRow;
 
 const TOP: f64 = 58.0;
@@ -29,17 +30,6 @@ pub fn zwidth(rows: &[ZwidthRow], printout: &Printout) -> Result<String, String>
         The right end of a curve is the strongest damping without stiffness. Each panel has its own \
         scales.";
     Ok(printout.page("Z-width", intro, &figures))
-}
-
-/// The values, once each, in order of appearance.
-fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
-    let mut found = Vec::new();
-    for value in values {
-        if !found.contains(&value) {
-            found.push(value);
-        }
-    }
-    found
 }
 
 fn chart(rows: &[&ZwidthRow], lines: u32, palette: &Palette) -> Result<Svg, String> {

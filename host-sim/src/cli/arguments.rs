@@ -9,6 +9,7 @@ use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::designed::{Place, designed};
+use experiments::distinct;
 use recordings::arguments::DeviceFile;
 use recordings::log::is_stdin;
 use simulation::scenario::ScenarioName;
@@ -248,13 +249,8 @@ pub(super) fn one_stdin(name: &str, recordings: &[PathBuf]) -> Result<(), Failur
 
 /// The given values without duplicates; `default` if none is given.
 pub(super) fn distinct<T: Copy + PartialEq>(given: &[T], default: &[T]) -> Vec<T> {
-    let mut values = Vec::new();
-    for &value in if given.is_empty() { default } else { given } {
-        if !values.contains(&value) {
-            values.push(value);
-        }
-    }
-    values
+    let values = if given.is_empty() { default } else { given };
+    distinct::distinct(values.iter().copied())
 }
 
 #[cfg(test)]

@@ -194,19 +194,13 @@ fn settings(options: &Real) -> Result<Settings, Failure> {
         .phase
         .iter()
         .try_for_each(|counts| phase(*counts).map(drop))?;
-    let mut counts_per_rev = options.counts_per_rev.clone();
-    counts_per_rev.dedup();
     Ok(Settings {
         estimators: kinds(&options.estimators)?,
         parameters: options.parameters.load()?,
         device: options.device.load()?,
-        counts_per_rev,
+        counts_per_rev: distinct(&options.counts_per_rev, &[]),
         rates_hz: rates,
-        phases: if options.phase.is_empty() {
-            PHASES.to_vec()
-        } else {
-            options.phase.clone()
-        },
+        phases: distinct(&options.phase, &PHASES),
         seconds: seconds(options.seconds)?,
     })
 }

@@ -261,3 +261,16 @@ fn what_several_recordings_have_in_common_is_said_once() {
     let begin = "f.csv and 1 more: 1 row is left out that has the time of the row before, the first in line 6";
     assert!(notes.len() == 1 && notes[0].starts_with(begin), "{said}");
 }
+
+#[test]
+fn values_that_are_given_twice_run_once() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("f.csv", fine());
+    folder.write("recordings.toml", LIST);
+    let run =
+        |values: &str| folder.good(&format!("real --data . --estimator pll --json - {values}"));
+    assert_eq!(
+        run("--counts-per-rev 1000,500,1000 --phase 0.5,0.25,0.5"),
+        run("--counts-per-rev 1000,500 --phase 0.5,0.25")
+    );
+}

@@ -7,9 +7,10 @@ use std::sync::LazyLock;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
+use experiments::distinct::distinct;
 use experiments::real::cases::{Case, Recordings};
 use experiments::real::peers::{self, PEERS, PLL, Peer};
-use experiments::real::pool::{distinct, mean, on};
+use experiments::real::pool::{mean, on};
 use experiments::real::run::{Row, Settings};
 use experiments::real::sources::Role;
 use measured::Table;

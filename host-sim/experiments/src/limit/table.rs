@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use terminal::wording::wrapped;
 
 use super::{LimitRow, is_bound};
+use crate::distinct::distinct;
 use crate::table::layout::{self, Column};
 use crate::table::no_percentage;
 
@@ -78,16 +79,6 @@ fn cell<'a>(rows: impl Iterator<Item = &'a LimitRow>) -> String {
         (pct, over) if pct == over && pct == "-" => pct,
         (pct, over) => format!("{pct} ({over})"),
     }
-}
-
-fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
-    let mut found = Vec::new();
-    for value in values {
-        if !found.contains(&value) {
-            found.push(value);
-        }
-    }
-    found
 }
 
 #[cfg(test)]

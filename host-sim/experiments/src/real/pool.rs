@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::run::{Row, Score};
 use super::sources::Role;
+use crate::distinct::distinct;
 
 /// Which recordings are pooled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -72,17 +73,6 @@ pub fn blocks(rows: &[Row]) -> Vec<(u32, f64)> {
         true => distinct(rows.iter().map(|row| (row.counts_per_rev, row.rate_hz))),
         false => found,
     }
-}
-
-/// The values, once each, in order of appearance.
-pub fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
-    let mut found = Vec::new();
-    for value in values {
-        if !found.contains(&value) {
-            found.push(value);
-        }
-    }
-    found
 }
 
 /// The mean of each score over the values that are there.

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::pool::{Over, block, blocks, distinct, on, pool};
+use super::pool::{Over, block, blocks, on, pool};
 use super::rest::{MOTION_RAD_S, REST_RAD_S, REST_S};
 use super::run::{Row, Score};
 use super::sources::Role;
+use crate::distinct::distinct;
 use crate::table::layout::{self, Column};
 use crate::table::number;
 use terminal::wording::wrapped;

@@ -7,16 +7,12 @@ use super::super::causes::{Bar, Block, EXPLANATION, stacked};
 use super::super::section::explanation;
 use super::super::text::rate;
 use super::{ClosedLoop, uses_velocity};
+use experiments::distinct::distinct;
 use haptic_control::SceneKind;
 
 /// The figure of free air, and those of the other scenes to unfold; `None` without attribution.
 pub(super) fn markup(closed: &ClosedLoop, threshold_mn: f64) -> Result<Option<Markup>, String> {
-    let mut scenes: Vec<SceneKind> = Vec::new();
-    for outcome in &closed.outcomes {
-        if !scenes.contains(&outcome.case.scene) {
-            scenes.push(outcome.case.scene);
-        }
-    }
+    let scenes = distinct(closed.outcomes.iter().map(|outcome| outcome.case.scene));
     let mut figures: Vec<(SceneKind, Svg)> = Vec::new();
     for scene in scenes {
         figures.extend(of_scene(closed, scene, threshold_mn)?.map(|svg| (scene, svg)));

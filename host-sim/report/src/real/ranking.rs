@@ -6,7 +6,8 @@ use super::super::plot::{Axis, Plot};
 use super::super::text::number;
 use super::SHOWN_PCT;
 use catalogue::estimators::Kind;
-use experiments::real::pool::{block, distinct, on};
+use experiments::distinct::distinct;
+use experiments::real::pool::{block, on};
 use experiments::real::run::Row;
 use experiments::real::sources::Role;
 

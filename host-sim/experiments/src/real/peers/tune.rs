@@ -7,9 +7,9 @@ use terminal::failure::Failure;
 use super::Scored;
 use super::list::Peer;
 use super::path;
+use crate::distinct::distinct;
 use crate::parallel::in_order;
 use crate::real::cases::{Case, Recordings};
-use crate::real::pool::distinct;
 use crate::real::run::Settings;
 use crate::real::sources::Role;
 
