@@ -84,6 +84,10 @@ pub fn identify(
             quantity.reject(reason);
         }
     }
+    // The handle's constants are scaled by the large shaft's damping, and doubted with it.
+    let turns = gathered.travel[1] > TURNS;
+    let handle = handle::quantities(&gathered.free, turns, &fit, device, known);
+    quantities.extend(handle.into_iter().flatten());
     if let Some(why) = gathered.doubts(&fit) {
         for quantity in &mut quantities {
             quantity.doubt(&why);
@@ -98,9 +102,6 @@ pub fn identify(
             widths.join(", ")
         )));
     }
-    let turns = gathered.travel[1] > TURNS;
-    let handle = handle::quantities(&gathered.free, turns, &fit, device, known);
-    quantities.extend(handle.into_iter().flatten());
     let mut assumed = assumptions(known, gathered.unseen);
     assumed.append(&mut gathered.without_handle);
     Ok(Identification {

@@ -130,7 +130,7 @@ fn unknown_torque_is_reported_and_no_value_is_written() {
     folder.write("log.csv", log(back_and_forth, |t| 8.0 * unknown(t)));
     let line = folder.refused(&CLAMPED);
     assert!(
-        line.contains("no hand or contact touched the shaft"),
+        line.contains("no hand or contact touched the shaft") && line.contains("(limit 30 %)"),
         "{line}"
     );
 }
@@ -174,4 +174,38 @@ fn logs_that_tell_nothing_are_refused_for_their_reason() {
     folder.write("log.csv", format!("t,counts_large,current\n{rows}"));
     let line = folder.refused(&CLAMPED);
     assert!(line.contains("the velocity is constant"), "{line}");
+}
+
+#[test]
+fn handle_is_doubted_with_the_motor_whose_torque_is_unexplained() {
+    let folder = Folder::new(HOST_SIM);
+    folder.good("simulate --hand nobody --every 10 --out free.csv");
+    // The log lacks a part of the large motor's current, 20 mA, and has that of the small motor.
+    let text = folder.text("free.csv");
+    let (header, rows) = text.split_once('\n').unwrap();
+    assert!(header.starts_with("t,counts_large,counts_small,current,"));
+    let mut log = format!("{header}\n");
+    for row in rows.lines() {
+        let mut fields: Vec<_> = row.split(',').map(str::to_owned).collect();
+        let [t, current] = [0, 3].map(|k: usize| fields[k].parse::<f64>().unwrap());
+        fields[3] = (current + 0.02 * (31.0 * t + 2.0 * (5.0 * t).sin()).sin()).to_string();
+        log += &(fields.join(",") + "\n");
+    }
+    folder.write("log.csv", log);
+    // With a known damping the intervals of the handle do not depend on the large motor.
+    let known = "identify log.csv --known coupler.damping_nms_per_rad=9.6e-4";
+    let table = folder.good(known);
+    for key in ["small.torque_constant_nm_per_a", "small.inertia_kg_m2"] {
+        let lines = table.split(&format!("not identified: {key}: ")).nth(1);
+        let said = lines.and_then(|lines| lines.split("not identified").next());
+        let said: Vec<_> = said.unwrap_or_default().split_whitespace().collect();
+        let said = said.join(" ");
+        assert!(
+            said.contains("of the motor's torque is unexplained"),
+            "{key}: {table}"
+        );
+    }
+    let line = folder.refused(&format!("{known} --out new.toml"));
+    assert!(line.contains("no constant is identified: "), "{line}");
+    assert!(!folder.path().join("new.toml").exists());
 }

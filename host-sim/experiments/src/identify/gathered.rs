@@ -205,7 +205,7 @@ impl Gathered {
                 "the model leaves {:.0} % of the motor's torque unexplained (limit {:.0} %){}; check that \
                  column current is in A, that large.counts_per_rev = {} is correct, and that {}",
                 100.0 * unexplained,
-                100.0 * MOST_UNEXPLAINED,
+                100.0 * REFUSED_UNEXPLAINED,
                 match backward {
                     true => ", and the shaft turns against the current",
                     false => "",
