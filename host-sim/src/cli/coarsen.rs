@@ -25,7 +25,7 @@ pub(super) struct Coarsen {
     counts_per_rev: u32,
     /// Counts per revolution of the fine encoder [default: those in the recordings.toml beside the
     /// file, or those that the file states]
-    #[arg(long, value_name = "F", value_parser = clap::value_parser!(u32).range(16..))]
+    #[arg(long, value_name = "F", value_parser = recordings::arguments::counts_per_rev())]
     fine_counts_per_rev: Option<u32>,
     /// Rate of the coarse recording, 10 to 100000 Hz, at most that of the fine one
     #[arg(long, value_name = "HZ", default_value_t = 1000.0)]

@@ -13,6 +13,10 @@ const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real");
 const LIST: &str =
     "[[recording]]\nfile = 'f.csv'\nwhat = 'x'\nkind = 'fine'\ncounts_per_rev = 100000\n";
 
+/// A list with one coarse recording `c.csv` of 90 counts per revolution.
+const LIST_COARSE: &str =
+    "[[recording]]\nfile = 'c.csv'\nwhat = 'x'\nkind = 'coarse'\ncounts_per_rev = 90\n";
+
 /// 1 s at 2 kHz: rest for 0.5 s, then 5 rad/s. A revolution has 100 000 counts.
 fn fine() -> String {
     let mut text = String::from("time_s,fine_count,true_omega_rad_s\n");
@@ -260,6 +264,36 @@ fn what_several_recordings_have_in_common_is_said_once() {
     let notes: Vec<_> = said.lines().filter(|line| line.contains("csv")).collect();
     let begin = "f.csv and 1 more: 1 row is left out that has the time of the row before, the first in line 6";
     assert!(notes.len() == 1 && notes[0].starts_with(begin), "{said}");
+}
+
+#[test]
+fn coarse_recording_that_wraps_has_the_scores_of_the_one_that_does_not() {
+    let folder = Folder::new(HOST_SIM);
+    let recording = fs::read_to_string(format!("{DATA}/../back-and-forth.csv")).unwrap();
+    folder.write("recordings.toml", LIST_COARSE);
+    let run = |text: &str| {
+        folder.write("c.csv", text);
+        let output = folder.run("real --data . --estimator pll --estimator low-pass --json -");
+        assert_eq!(output.status.code(), Some(0));
+        (output.stdout, String::from_utf8(output.stderr).unwrap())
+    };
+    let (straight, said) = run(&recording);
+    assert!(!said.contains("wraps"), "{said}");
+    let mut wrapped = String::new();
+    for line in recording.lines() {
+        let mut fields: Vec<_> = line.split(',').map(str::to_owned).collect();
+        for k in [1, 3] {
+            if let Ok(count) = fields[k].parse::<i64>() {
+                fields[k] = count.rem_euclid(90).to_string();
+            }
+        }
+        wrapped += &(fields.join(",") + "\n");
+    }
+    let (unwrapped, said) = run(&wrapped);
+    let note =
+        "c.csv: counts_large wraps at 90 and is unwrapped: a revolution of an absolute encoder";
+    assert!(said.contains(note), "{said}");
+    assert!(unwrapped == straight);
 }
 
 #[test]

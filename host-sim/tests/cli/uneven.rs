@@ -262,3 +262,36 @@ fn steps_that_the_digits_of_t_explain_are_a_constant_period() {
         );
     }
 }
+
+#[test]
+fn rows_in_bursts_and_counts_of_no_encoder_are_refused() {
+    let folder = Folder::new(HOST_SIM);
+    // 1 kHz, 16 rows at a time, 40 us apart.
+    let mut text = String::from("t,counts_large,true_omega\n");
+    for k in 0..4000 {
+        let t = f64::from(k / 16 * 16) * 1e-3 + f64::from(k % 16) * 4e-5;
+        text += &format!("{t},{},1\n", 16 * k);
+    }
+    folder.write("f.csv", text);
+    let said = "f.csv: column t: the rows come in bursts, about 16 rows each 16 ms";
+    let coarsen =
+        "coarsen f.csv --counts-per-rev 1000 --rate 500 --out c.csv --fine-counts-per-rev";
+    let line = folder.refused(&format!("{coarsen} 100000"));
+    assert!(line.contains(said), "{line}");
+    // Their times are not those of the measurement.
+    folder.good(&format!("{coarsen} 100000 --row-rate 1000"));
+    for kind in ["fine", "coarse"] {
+        let list = format!(
+            "[[recording]]\nfile = 'f.csv'\nwhat = 'x'\nkind = '{kind}'\ncounts_per_rev = 100000\n"
+        );
+        folder.write("recordings.toml", list);
+        let line = folder.refused("real --data . --rate 500 --counts-per-rev 1000");
+        assert!(line.contains(said), "{kind}: {line}");
+    }
+    let line = folder.refused(&format!("{coarsen} 4000000000"));
+    assert!(
+        line.contains("--fine-counts-per-rev") && line.contains("4000000"),
+        "{line}"
+    );
+    assert!(line.contains("is not in"), "{line}");
+}

@@ -176,7 +176,11 @@ fn data(folder: &Path, source: &Source, device: &Device, seconds: f64) -> Result
             (Data::Fine(fine), has_truth)
         }
         sources::Kind::Coarse => {
-            let recording = Recording::parse_first(log.reader()?, log.name(), &options, seconds)?;
+            let mut recording =
+                Recording::parse_first(log.reader()?, log.name(), &options, seconds)?;
+            recording.check_times(log.name())?;
+            let unwrapped = recording.unwrap_counts(&options);
+            recording.notes.extend(unwrapped);
             let has_truth = recording.trace.true_omega.is_some();
             (Data::Coarse(Box::new(recording)), has_truth)
         }

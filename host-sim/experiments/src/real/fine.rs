@@ -28,6 +28,7 @@ impl Fine {
     /// [`Failure::Input`], one line that names file, line and column.
     pub fn read(log: &Log, options: &ReadOptions, seconds: f64) -> Result<Self, Failure> {
         let mut recording = Recording::parse_first(log.reader()?, log.name(), options, seconds)?;
+        recording.check_times(log.name())?;
         let unwrapped = recording.unwrap_counts(options);
         Ok(Self {
             unwrapped,
