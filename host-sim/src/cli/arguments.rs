@@ -11,7 +11,7 @@ use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::designed::{Place, designed};
 use experiments::distinct;
 use recordings::arguments::DeviceFile;
-use recordings::log::is_stdin;
+use recordings::log::{Log, is_stdin};
 use simulation::scenario::ScenarioName;
 use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
@@ -237,8 +237,29 @@ pub(super) fn loop_rate_help() -> String {
     format!("Control rate, {LOWEST_RATE_HZ} to {} Hz", RATES_HZ.1)
 }
 
+/// Opens these recordings. `name` is that of the argument. A recording that is there twice is refused: it says
+/// nothing new, and would have twice the weight.
+pub(super) fn open_logs(name: &str, recordings: &[PathBuf]) -> Result<Vec<Log>, Failure> {
+    one_stdin(name, recordings)?;
+    let logs = recordings.iter().map(|path| Log::open(path));
+    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    let mut sums: Vec<u64> = Vec::new();
+    for log in logs.iter().filter(|_| logs.len() > 1) {
+        let sum = log.sum()?;
+        if let Some(k) = sums.iter().position(|known| *known == sum) {
+            return Err(Failure::Input(format!(
+                "{}: is already given by {}; give each recording once",
+                log.name(),
+                logs[k].name()
+            )));
+        }
+        sums.push(sum);
+    }
+    Ok(logs)
+}
+
 /// Checks that standard input is among these recordings once at most. `name` is that of the argument.
-pub(super) fn one_stdin(name: &str, recordings: &[PathBuf]) -> Result<(), Failure> {
+fn one_stdin(name: &str, recordings: &[PathBuf]) -> Result<(), Failure> {
     match recordings.iter().filter(|path| is_stdin(path)).count() {
         0 | 1 => Ok(()),
         _ => Err(Failure::Input(format!(

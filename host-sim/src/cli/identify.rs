@@ -11,9 +11,9 @@ use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::one_stdin;
+use super::arguments::open_logs;
 use super::page;
-use recordings::log::{Log, short_name};
+use recordings::log::short_name;
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {
@@ -49,36 +49,13 @@ pub(super) struct Identify {
     json: Option<PathBuf>,
 }
 
-/// Refuses a recording that is there twice: it says nothing new, and would make the intervals smaller.
-fn refuse_twice(logs: &[Log]) -> Result<(), Failure> {
-    if logs.len() < 2 {
-        return Ok(());
-    }
-    let mut sums: Vec<u64> = Vec::new();
-    for log in logs {
-        let sum = log.sum()?;
-        if let Some(k) = sums.iter().position(|known| *known == sum) {
-            return Err(Failure::Input(format!(
-                "{}: is already given by {}; give each recording once",
-                log.name(),
-                logs[k].name()
-            )));
-        }
-        sums.push(sum);
-    }
-    Ok(())
-}
-
 pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure> {
     page::one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
     if let Some(folder) = &options.report {
         Folder::check("--report", folder)?;
     }
-    one_stdin("RECORDING", &options.recordings)?;
     let loaded = options.device.loaded()?;
-    let logs = options.recordings.iter().map(|path| Log::open(path));
-    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    refuse_twice(&logs)?;
+    let logs = open_logs("RECORDING", &options.recordings)?;
     let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
     let known = match &options.known {

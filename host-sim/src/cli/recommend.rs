@@ -15,7 +15,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, one_stdin};
+use super::arguments::{ParameterOptions, open_logs};
 use super::page::{self, progress};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
@@ -61,11 +61,9 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
             options.instructions
         )));
     }
-    one_stdin("LOG", &options.logs)?;
     let loaded = options.device.loaded()?;
     let parameters = options.parameters.load()?;
-    let logs = options.logs.iter().map(|path| Log::open(path));
-    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    let logs = open_logs("LOG", &options.logs)?;
     let counted = options.recording.counted(loaded, &logs)?;
     let device = counted.device;
     let read = |log: &Log| -> Result<(String, Recording), Failure> {

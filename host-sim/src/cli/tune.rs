@@ -14,10 +14,10 @@ use shards::{Experiment, Part};
 use terminal::failure::Failure;
 use terminal::output::{check_place, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::{check_rates, distinct, kinds, one_stdin, scenarios};
+use super::arguments::{check_rates, distinct, kinds, open_logs, scenarios};
 use super::shard::{self, Outputs};
 use experiments::uneven::{Chosen, Recorded};
-use recordings::log::{Log, short_name};
+use recordings::log::short_name;
 
 /// Default presets file.
 const PRESETS: &str = "target/presets.toml";
@@ -215,10 +215,8 @@ fn write(
 
 /// The searches on recordings.
 fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Failure> {
-    one_stdin("RECORDING", &options.recordings)?;
     let loaded = options.device.loaded()?;
-    let logs = options.recordings.iter().map(|path| Log::open(path));
-    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    let logs = open_logs("RECORDING", &options.recordings)?;
     let counted = options.read.counted(loaded, &logs)?;
     let (device, mut notes) = (counted.device, counted.lines);
     let are_counts_known = !notes.is_empty() || options.read.encoder.counts_per_rev.is_some();

@@ -213,3 +213,21 @@ fn report_does_not_replace_a_file_that_no_run_wrote() {
     assert_eq!(folder.text("drawn/figures/01.svg"), "mine");
     assert!(!folder.path().join("drawn/index.html").exists());
 }
+
+#[test]
+fn recording_that_is_given_twice_is_refused() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("log.csv", log());
+    folder.write("copy.csv", log());
+    for command in [
+        "identify --clamped",
+        "recommend --counts-per-rev 4096",
+        "tune --counts-per-rev 4096 --estimator low-pass --out new.toml",
+    ] {
+        for (first, second) in [("log.csv", "./log.csv"), ("log.csv", "copy.csv")] {
+            let line = folder.refused(&format!("{command} {first} {second}"));
+            let said = format!("{second}: is already given by {first}; give each recording once");
+            assert!(line.contains(&said), "{command}: {line}");
+        }
+    }
+}

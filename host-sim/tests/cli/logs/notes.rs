@@ -149,7 +149,8 @@ fn current_that_no_amplifier_delivers_is_reported_once_a_file() {
             assert!(!notes.contains("in mA"), "{command}, {log}: {notes}");
         }
     }
-    let both = notes("recommend own.csv own.csv");
+    folder.write("other.csv", with_current("current", "901"));
+    let both = notes("recommend own.csv other.csv");
     assert_eq!(both.matches("if it is in mA").count(), 2, "{both}");
     let line = folder.refused("identify own.csv --clamped");
     assert!(
