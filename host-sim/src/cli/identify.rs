@@ -84,6 +84,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         found.assumed.splice(0..0, assumed);
         found.is_default = true;
     }
+    let mut updated = None;
     if let Some(out) = &options.out {
         let identified = |quantity: &Quantity| quantity.rejected.is_none();
         if !found.quantities.iter().any(identified) {
@@ -101,7 +102,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         let names = names.join(", ");
         let text = identify::updated(&text, &found.quantities, known, given, counts, &names)
             .map_err(|error| Failure::Input(format!("{}: {error}", out.display())))?;
-        write_whole(out, text.as_bytes())?;
+        updated = Some((out, text));
     }
     if let Some(folder) = &options.report {
         let counts = f64::from(device.stages.large.counts_per_rev);
@@ -121,6 +122,10 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
             .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
         json.push(b'\n');
         write_whole(path, &json)?;
+    }
+    // Last, because it may replace the user's own file: where another output fails, that file is kept.
+    if let Some((out, text)) = updated {
+        write_whole(out, text.as_bytes())?;
     }
     for line in notes {
         note(line);

@@ -209,3 +209,18 @@ fn handle_is_doubted_with_the_motor_whose_torque_is_unexplained() {
     assert!(line.contains("no constant is identified: "), "{line}");
     assert!(!folder.path().join("new.toml").exists());
 }
+
+#[test]
+fn device_file_is_kept_where_another_output_fails() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let folder = Folder::new(HOST_SIM);
+    folder.write("log.csv", log(back_and_forth, |_| 0.0));
+    let mine = "large.counts_per_rev = 4096\n";
+    folder.write("mine.toml", mine);
+    let command = "identify log.csv --clamped --device mine.toml --out mine.toml --json /dev/full";
+    let output = folder.run(command);
+    assert!(!output.status.success(), "{output:?}");
+    assert_eq!(folder.text("mine.toml"), mine);
+}
