@@ -29,7 +29,7 @@ use super::page::{self, progress};
 use super::report_extras::{ReportExtras, report_extras};
 
 /// Default folder of the report.
-const REPORT: &str = "target/report";
+pub(super) const REPORT: &str = "target/report";
 
 /// Scenarios whose signals the report's figures show.
 const DRAWN: Role = Role::Tuning;

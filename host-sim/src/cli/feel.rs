@@ -23,7 +23,7 @@ use super::compare::longer_than_skipped;
 use super::page::{self, progress};
 
 /// Default folder of the page.
-const PAGE: &str = "target/feel";
+pub(super) const PAGE: &str = "target/feel";
 
 /// Help text of `--scene`, with the names of the scenes.
 fn scene_help() -> String {

@@ -9,16 +9,42 @@ use clap::{Arg, ArgMatches, Command};
 use terminal::failure::Failure;
 use terminal::output::{self, Folder, check_place, is_same, is_stdout, one_file};
 
+use super::{compare, feel, robust, sensitivity, zwidth};
+
 /// Options that name an output. All other paths are inputs.
 const OUTPUTS: [&str; 5] = ["out", "json", "csv", "report", "mcap"];
 
 /// The only output that may be an input: `identify --out` keeps the other keys of `--device`.
 const KEPT: [&str; 3] = ["identify", "out", "device"];
 
-/// Names of the files in the folders of reports beside the figures, by command.
-const REPORTED: [(&str, &[&str]); 8] = [
-    (
-        "compare",
+/// A command that writes a report.
+struct Report {
+    command: &'static str,
+    /// Its folder where none is given; `None` if no report is written then.
+    usual: Option<&'static str>,
+    /// Names of its files beside the figures.
+    files: &'static [&'static str],
+}
+
+impl Report {
+    const fn new(
+        command: &'static str,
+        usual: Option<&'static str>,
+        files: &'static [&'static str],
+    ) -> Self {
+        Self {
+            command,
+            usual,
+            files,
+        }
+    }
+}
+
+/// The commands that write reports.
+const REPORTS: [Report; 8] = [
+    Report::new(
+        COMPARE,
+        Some(compare::REPORT),
         &[
             "index.html",
             "scores.csv",
@@ -27,23 +53,33 @@ const REPORTED: [(&str, &[&str]); 8] = [
             "closed-loop.json",
         ],
     ),
-    (
+    Report::new(
         "feel",
+        Some(feel::PAGE),
         &["index.html", "feel.json", "causes.csv", "switched-off.csv"],
     ),
-    ("identify", &["index.html"]),
-    ("real", &["index.html", "real.csv", "real.json"]),
-    ("recommend", &["index.html"]),
-    (
+    Report::new("identify", None, &["index.html"]),
+    Report::new("real", None, &["index.html", "real.csv", "real.json"]),
+    Report::new("recommend", None, &["index.html"]),
+    Report::new(
         "robust",
+        Some(robust::REPORT),
         &["index.html", "summary.svg", "robust.csv", "robust.json"],
     ),
-    (
+    Report::new(
         "sensitivity",
+        Some(sensitivity::PAGE),
         &["index.html", "sensitivity.csv", "sensitivity.json"],
     ),
-    ("zwidth", &["index.html", "zwidth.csv", "zwidth.json"]),
+    Report::new(
+        "zwidth",
+        Some(zwidth::PAGE),
+        &["index.html", "zwidth.csv", "zwidth.json"],
+    ),
 ];
+
+/// The command that runs where none is given.
+const COMPARE: &str = "compare";
 
 /// A path of the command line with the identifier of its argument and its name in messages.
 struct Named {
@@ -62,15 +98,15 @@ struct Named {
 /// [`Failure::Input`] that names an output that is an input, two outputs that are one file, a file that may be
 /// one of a report, or an output without a place.
 pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure> {
-    let Some((name, matches)) = matches.subcommand() else {
-        return Ok(());
-    };
+    let (name, matches) = matches.subcommand().unwrap_or((COMPARE, matches));
     let command = root.find_subcommand(name);
     let arguments = command.into_iter().flat_map(Command::get_arguments);
     let paths = arguments.filter(|argument| is_path(argument));
     let paths = paths.flat_map(|argument| given(argument, matches));
-    let (outputs, inputs): (Vec<_>, Vec<_>) =
+    let (mut outputs, inputs): (Vec<_>, Vec<_>) =
         paths.partition(|of| OUTPUTS.contains(&of.id.as_str()));
+    // First, so that an option is named that is in its way.
+    outputs.splice(0..0, usual_folder(name, matches));
     for (k, output) in outputs.iter().enumerate() {
         for input in &inputs {
             if [name, &output.id, &input.id] != KEPT {
@@ -95,6 +131,27 @@ pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure>
     Ok(())
 }
 
+/// The folder of the report of `command`, or of the file of a shard, where `--out` does not name one.
+fn usual_folder(command: &str, matches: &ArgMatches) -> Option<Named> {
+    let raw = |id| matches.try_get_raw(id).ok().flatten();
+    let is_set = |id| matches!(matches.try_get_one::<bool>(id), Ok(Some(true)));
+    let mut json = raw("json").into_iter().flatten();
+    // The report of a single device is written only where it is asked for.
+    let is_unwritten = is_set("no_report") || raw("only").is_some();
+    if raw("out").is_some() || is_unwritten || json.any(|path| is_stdout(Path::new(path))) {
+        return None;
+    }
+    let mut reports = REPORTS.iter();
+    let report = reports.find(|report| report.command == command)?;
+    Some(Named {
+        id: "out".to_owned(),
+        name: "the default --out".to_owned(),
+        path: PathBuf::from(report.usual?),
+        is_folder: true,
+        is_shard: raw("shard").is_some(),
+    })
+}
+
 /// Checks that the folder of an output has a place, and no file that the report of `command` would replace and
 /// that is not of an earlier run.
 fn check_folder(command: &str, output: &Named) -> Result<(), Failure> {
@@ -102,8 +159,8 @@ fn check_folder(command: &str, output: &Named) -> Result<(), Failure> {
     if output.is_shard {
         return Ok(());
     }
-    let reported = REPORTED.iter().filter(|(name, _)| *name == command);
-    let names = reported.flat_map(|(_, names)| names.iter().copied());
+    let reports = REPORTS.iter().filter(|report| report.command == command);
+    let names = reports.flat_map(|report| report.files.iter().copied());
     Folder::check_files(&output.name, &output.path, names)
 }
 
@@ -116,7 +173,7 @@ fn refuse_reported(file: &Named, folder: &Named) -> Result<(), Failure> {
         above
     };
     let stem = file.path.file_stem();
-    let mut names = REPORTED.iter().flat_map(|(_, names)| names.iter());
+    let mut names = REPORTS.iter().flat_map(|report| report.files);
     let is_reported = names.any(|name| Path::new(name).file_stem() == stem);
     if file.is_folder || !is_reported || !is_same(above, &folder.path) {
         return Ok(());
@@ -191,7 +248,7 @@ mod tests {
             // The text of this test is no call.
             names.extend(calls.map(name).filter(|name| name.contains('.')));
         }
-        let known = REPORTED.iter().flat_map(|(_, names)| names.iter());
+        let known = REPORTS.iter().flat_map(|report| report.files);
         let known: BTreeSet<_> = known.map(|name| (*name).to_owned()).collect();
         assert_eq!(names, known);
     }

@@ -22,7 +22,7 @@ use super::page;
 use super::shard::{self, Asked, Outputs};
 
 /// Default folder of the report.
-const REPORT: &str = "target/robust";
+pub(super) const REPORT: &str = "target/robust";
 
 /// Text before the progress bar.
 const DOING: &str = "simulating";

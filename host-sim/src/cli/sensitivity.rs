@@ -20,7 +20,7 @@ use super::page;
 use super::shard::{Asked, Outputs};
 
 /// Default folder of the page.
-const PAGE: &str = "target/sensitivity";
+pub(super) const PAGE: &str = "target/sensitivity";
 
 /// Text before the progress bar.
 const DOING: &str = "running";

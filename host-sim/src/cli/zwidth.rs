@@ -22,7 +22,7 @@ use super::page;
 use super::shard::{Asked, Outputs};
 
 /// Default folder of the page.
-const PAGE: &str = "target/zwidth";
+pub(super) const PAGE: &str = "target/zwidth";
 
 /// Text before the progress bar.
 const DOING: &str = "searching";

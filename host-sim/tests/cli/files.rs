@@ -172,6 +172,12 @@ fn file_that_may_be_one_of_the_report_is_refused() {
         assert!(line.contains(&said), "{line}");
     }
     folder.good(&format!("{run} --out zz --json zz/rows.json"));
+    // The folder without --out.
+    let usual = "target/report/scores.json";
+    let line = folder.refused(&format!("{run} --json {usual}"));
+    let said = format!("--json {usual}: may be a file of the default --out target/report; choose");
+    assert!(line.contains(&said), "{line}");
+    folder.good(&format!("{run} --no-report --json {usual}"));
 }
 
 #[test]
@@ -212,6 +218,37 @@ fn report_does_not_replace_a_file_that_no_run_wrote() {
     assert!(line.contains("figures/01.svg was not written"), "{line}");
     assert_eq!(folder.text("drawn/figures/01.svg"), "mine");
     assert!(!folder.path().join("drawn/index.html").exists());
+}
+
+#[test]
+fn default_folder_of_a_report_is_checked_before_the_run() {
+    let folder = Folder::new(HOST_SIM);
+    // More work than a test has time for.
+    let long = "--seconds 1e4 --rate 100000";
+    for (name, command) in [
+        ("report", format!("compare {long}")),
+        ("report", format!("compare --closed-loop {long}")),
+        ("robust", "robust --devices 10000000".to_owned()),
+        ("zwidth", "zwidth --exact".to_owned()),
+        ("sensitivity", format!("sensitivity {long}")),
+        ("feel", format!("feel {long}")),
+    ] {
+        let usual = format!("target/{name}");
+        fs::create_dir_all(folder.path().join(&usual)).unwrap();
+        folder.write(&format!("{usual}/index.html"), "mine");
+        let line = folder.refused(&command);
+        let said = format!("the default --out {usual}: ");
+        assert!(line.contains(&said), "{command}: {line}");
+        assert!(
+            line.contains("was not written by host-sim, or was changed since; choose"),
+            "{command}: {line}"
+        );
+    }
+    // No report is written.
+    let short = "--scene off --rate 1000 --seconds 0.2";
+    folder.good(&format!("robust {short} --only 0"));
+    folder.good(&format!("robust {short} --devices 0 --json -"));
+    folder.good("compare --scenario step --rate 1000 --seconds 1 --estimator pll --no-report");
 }
 
 #[test]
