@@ -13,7 +13,7 @@ use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
 use super::files::refuse_input;
-use super::replay::About;
+use super::replay::{About, refuse_left_out};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, is_stdin, short_name};
 
@@ -92,6 +92,9 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         &parameters,
         &|| (),
     )?;
+    if !options.estimators.is_empty() {
+        refuse_left_out(path, &replayed.left_out)?;
+    }
     let svg = report::recording(&RecordingView {
         name: &name,
         recording: &recording,

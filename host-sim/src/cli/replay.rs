@@ -101,11 +101,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     };
     let (columns, rows) = (&survey.columns, survey.rows);
     let mut run = Run::new(columns, rows, &name, &chosen.kinds, &device, &parameters)?;
-    if let (true, Some((estimator, column))) = (run.estimates.is_empty(), run.left_out.first()) {
-        return Err(Failure::Input(format!(
-            "{}: line 1: no column {column}, which {estimator} needs; see host-sim estimators",
-            called(&options.trace)
-        )));
+    if !options.estimators.is_empty() || run.estimates.is_empty() {
+        refuse_left_out(log.name(), &run.left_out)?;
     }
     let mut passes = Passes {
         parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
@@ -189,6 +186,21 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let with_coupler = survey.columns.counts_small.is_some();
     let table = replay::table(&rows, with_coupler, terminal_width());
     print_bytes(format!("{header}\n{table}").as_bytes())
+}
+
+/// Refuses a recording, called `name`, without a column that an estimator needs.
+///
+/// # Errors
+/// [`Failure::Input`] that names the first of the estimators that are `left_out`, and its column.
+pub(super) fn refuse_left_out(
+    name: &str,
+    left_out: &[(&'static str, &'static str)],
+) -> Result<(), Failure> {
+    left_out.first().map_or(Ok(()), |(estimator, column)| {
+        Err(Failure::Input(format!(
+            "{name}: line 1: no column {column}, which {estimator} needs; see host-sim estimators"
+        )))
+    })
 }
 
 /// What was computed of a whole recording.

@@ -332,3 +332,16 @@ fn estimators_that_are_not_made_for_the_rate_are_left_out() {
         assert!(line.contains("imm"), "{line}");
     }
 }
+
+#[test]
+fn named_estimator_without_its_column_is_refused() {
+    let folder = Folder::new(HOST_SIM);
+    let recording = format!("{DATA}/back-and-forth.csv");
+    let named = ["--estimator", "pll", "--estimator", "kalman-motor"];
+    for (command, out) in [("replay", "v.csv"), ("plot", "v.svg")] {
+        let line = folder.refused(&[&[command, &recording, "--out", out], &named[..]].concat());
+        let said = "line 1: no column current, which kalman-motor needs; see host-sim estimators";
+        assert!(line.contains(said), "{command}: {line}");
+        assert!(!folder.path().join(out).exists());
+    }
+}
