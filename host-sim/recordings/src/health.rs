@@ -9,7 +9,8 @@ use simulation::device::Device;
 const TOLERANCE: f64 = 0.1;
 
 /// One line per constant: the learned value of an image for the default device, the value of
-/// `device`, and whether they agree within a tenth.
+/// `device`, and whether they agree within a tenth. A friction of 0 has no line: no difference is
+/// relative to it.
 ///
 /// An image learns constants per inertia. The coupler's damping is the quotient of two of them, in
 /// which the inertia cancels.
@@ -59,12 +60,27 @@ pub fn lines(learned: &LearnedLine, device: &Device) -> Vec<String> {
             100.0 * off
         )
     };
-    pairs.into_iter().map(line).collect()
+    let comparable = pairs.into_iter().filter(|pair| pair.2 > 0.0);
+    comparable.map(line).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn friction_of_zero_has_no_line() {
+        let learned = LearnedLine {
+            damping: 0.0,
+            friction: 0.05,
+            torque_constant: 0.0,
+        };
+        let mut device = Device::default();
+        device.stages.large.coulomb_friction = 0.0;
+        let said = lines(&learned, &device);
+        assert_eq!(said.len(), 3, "{said:?}");
+        assert!(said.iter().all(|line| !line.contains("inf")), "{said:?}");
+    }
 
     #[test]
     fn learned_parameters_are_compared_with_identified_ones() {
