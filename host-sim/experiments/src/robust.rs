@@ -46,6 +46,8 @@ pub struct Settings {
     pub seconds: f64,
     /// The nominal device, with which the controller is designed.
     pub device: Device,
+    /// Name of the device, for the page.
+    pub device_name: String,
 }
 
 /// The experiment with everything built that all its runs share.
@@ -246,6 +248,7 @@ mod tests {
             seed: 1,
             seconds: 0.5,
             device,
+            device_name: String::new(),
         }
     }
 

@@ -92,7 +92,7 @@ pub(super) fn run(options: &Robust, run_line: &str) -> Result<(), Failure> {
     let jobs: Vec<_> = scenes.map(|scene| (scene, subject)).collect();
     let rows = shard::rows(&settings, &jobs, DOING)?;
     // The report of a single device is only written where it is asked for.
-    write(&settings, &rows, outputs.out.and(folder), outputs.json)
+    write(&settings, &rows, outputs, outputs.out.and(folder))
 }
 
 /// Message about an `--only` beyond the drawn devices.
@@ -118,6 +118,7 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
         seed: options.seed,
         seconds: options.seconds,
         device,
+        device_name: options.device.name(),
     })
 }
 
@@ -127,14 +128,14 @@ pub(super) fn finish(
     rows: &[RobustRow],
     outputs: Outputs<'_>,
 ) -> Result<(), Failure> {
-    write(settings, rows, outputs.folder(REPORT)?, outputs.json)
+    write(settings, rows, outputs, outputs.folder(REPORT)?)
 }
 
 fn write(
     settings: &Settings,
     rows: &[RobustRow],
+    outputs: Outputs<'_>,
     folder: Option<&Path>,
-    json_file: Option<&Path>,
 ) -> Result<(), Failure> {
     let json = rows::json(rows)?;
     let scenes = summary::summaries(rows)?;
@@ -148,9 +149,9 @@ fn write(
             .map(|line| wrapped(line, 0) + "\n")
             .collect();
         let printout = Printout {
-            command: &summary::command(settings),
+            command: &outputs.command_line(),
+            device: &settings.device_name,
             table: &(summary::table(settings, &scenes, NARROW) + &below),
-            ..Printout::default()
         };
         let page = report::robust(&summary::heading(settings), &scenes, &printout)?;
         let mut files = Folder::new(folder);
@@ -164,7 +165,7 @@ fn write(
         files.write()?;
         text.push_str(&format!("Report: {}\n", index.display()));
     }
-    page::print(json_file, &json, &text)?;
+    page::print(outputs.json, &json, &text)?;
     judged(settings, rows)
 }
 

@@ -132,3 +132,22 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         assert!(line.contains(said), "{arguments}: {line}");
     }
 }
+
+#[test]
+fn page_names_the_command_that_repeats_the_run_and_the_device() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("mine.toml", "[hand]\nstiffness_nm_per_rad = 0.4\n");
+    let run = "robust --scene off --rate 1000 --seconds 0.2 --devices 1 --device mine.toml \
+               --estimator pll --set pll.bandwidth_hz=200";
+    folder.good(&format!("{run} --out page"));
+    let words: Vec<_> = run.split_whitespace().collect();
+    let command = format!("host-sim {} --out page", words.join(" "));
+    let page = folder.text("page/index.html");
+    assert!(page.contains(&command), "{page}");
+    assert!(page.replace(&command, "").contains("mine.toml"), "{page}");
+    // The page of a merged run is the page of the run.
+    folder.good(&format!("{run} --shard 1/1 --out parts"));
+    folder.good("merge parts/shard-1-of-1.jsonl --out merged");
+    let merged = folder.text("merged/index.html");
+    assert_eq!(merged.replace("--out merged", "--out page"), page);
+}

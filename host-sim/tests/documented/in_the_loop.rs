@@ -48,6 +48,7 @@ fn robustness(rate_hz: f64, devices: u64) -> Vec<RobustRow> {
         seed: 1,
         seconds: 2.0,
         device,
+        device_name: String::new(),
     };
     let jobs = settings.jobs().unwrap();
     let experiment = robust::Experiment::new(&settings).unwrap();

@@ -104,18 +104,6 @@ pub fn heading(settings: &Settings) -> String {
     )
 }
 
-/// The command line of these settings, without device file and parameters.
-#[must_use]
-pub fn command(settings: &Settings) -> String {
-    let scenes: String = (settings.scenes.iter())
-        .map(|scene| format!(" --scene {scene}"))
-        .collect();
-    format!(
-        "host-sim robust{scenes} --rate {} --estimator {} --devices {} --seconds {} --seed {}",
-        settings.rate_hz, settings.estimator, settings.devices, settings.seconds, settings.seed
-    )
-}
-
 /// Table with one line per scene, in lines of `width` characters: numbers of the verdicts, then
 /// median, 95 % quantile and largest value of each quantity. The limits follow below it.
 #[must_use]
