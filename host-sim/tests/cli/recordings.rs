@@ -62,7 +62,7 @@ fn presets_for_another_encoder_or_rate_are_reported() {
     let said = notes(&folder, &format!("{replay} {estimators}"));
     let warning = "back-and-forth.csv: parameters tuned in the shipped presets for 4096 counts/rev at \
                    1000 Hz are scaled to 90 counts/rev at 1000 Hz, far from there: pll; to be better, tune \
-                   them with host-sim tune --rate 1000 --device FILE.toml";
+                   them with host-sim tune RECORDING or host-sim tune --rate 1000, with --device FILE.toml";
     assert!(said.contains(warning), "{said}");
     let said: Vec<_> = said.split_whitespace().collect();
     let said = said.join(" ");

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Override, Parameters, PlantKind, Preset, Presets};
 use crate::estimators::{Kind, Search, Setup};
+use simulation::simulate::RATES_HZ;
 
 /// Largest ratio of rates, or of counts per revolution, at which tuned values are scaled without a
 /// note.
@@ -20,7 +21,8 @@ impl Parameters {
     }
 
     /// One line for each preset whose values are scaled to a rate or an encoder that is far from the
-    /// tuned one: the estimators, both rates and encoders, and the remedy.
+    /// tuned one: the estimators, both rates and encoders, and the remedy: a recording is tuned on at any
+    /// rate, the simulated device only at those of [`RATES_HZ`].
     #[must_use]
     pub fn used_far_away(&self, kinds: &[&Kind], setup: &Setup, plant: PlantKind) -> Vec<String> {
         let mut far: BTreeMap<String, Vec<&str>> = BTreeMap::new();
@@ -46,13 +48,16 @@ impl Parameters {
             "{} counts/rev at {} Hz",
             setup.stages.large.counts_per_rev, setup.rate.0
         );
+        let simulated = match (RATES_HZ.0..=RATES_HZ.1).contains(&setup.rate.0) {
+            true => format!(" or host-sim tune --rate {}", setup.rate.0),
+            false => String::new(),
+        };
         let line = |(tuned, names): (String, Vec<&str>)| {
             format!(
                 "parameters tuned in {tuned} are scaled to {here}, far from there: {}; to be better, tune them \
-                 with host-sim tune --rate {} --device FILE.toml and give its file as --presets, or set \
-                 values with --set",
-                names.join(", "),
-                setup.rate.0
+                 with host-sim tune RECORDING{simulated}, with --device FILE.toml, and give its file as \
+                 --presets, or set values with --set",
+                names.join(", ")
             )
         };
         far.into_iter().map(line).collect()
@@ -107,8 +112,14 @@ mod tests {
         assert_eq!(said.len(), 1, "{said:?}");
         let words = "the shipped presets for 4096 counts/rev at 1000 Hz are scaled to 90 counts/rev at \
                      1000 Hz, far from there: pll, foaw-end-fit; to be better, tune them with host-sim tune \
-                     --rate 1000 --device FILE.toml";
+                     RECORDING or host-sim tune --rate 1000, with --device FILE.toml, and";
         assert!(said[0].contains(words), "{said:?}");
+        // The simulated device has no such rate.
+        for rate_hz in [50.0, 200_000.0] {
+            let said = far(&shipped, &["pll"], rate_hz, 4096);
+            let words = "tune them with host-sim tune RECORDING, with --device FILE.toml, and";
+            assert!(said[0].contains(words), "{said:?}");
+        }
         assert!(far(&shipped, &kinds, 300.0, 4096)[0].contains("at 300 Hz, far from there"));
         assert_eq!(
             far(&shipped, &["finite-difference"], 1000.0, 90),
