@@ -181,3 +181,15 @@ fn scores_of_a_coupler_need_a_recording_with_both_encoders() {
         }
     }
 }
+
+#[test]
+fn modulus_of_a_counter_of_32_bits_is_not_needed() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write(
+        "log.csv",
+        "t,counts_large\n0,4294967295\n0.001,0\n0.002,1\n",
+    );
+    let line = folder.refused("replay log.csv --modulus 4294967296");
+    let said = "for example 4096; a counter of 32 bits needs no modulus";
+    assert!(line.contains(said), "{line}");
+}

@@ -250,7 +250,8 @@ impl ReadOptions {
                 Ok(())
             }
             _ => Err(Failure::Input(format!(
-                "--modulus {text}: '{number}' is no number of counts from 2 to 2^31, for example 4096"
+                "--modulus {text}: '{number}' is no number of counts from 2 to 2^31, for example 4096; a counter \
+                 of 32 bits needs no modulus"
             ))),
         }
     }
