@@ -17,8 +17,8 @@ const ACROSS: usize = 3;
 /// Half the side of a mark, px.
 const MARK: f64 = 3.5;
 
-/// The panels of one rate and plant; `None` if no estimator has a measured cost. `limits` are the
-/// errors of the particle filter on the plant with friction.
+/// The panels of one rate on the plant with friction; `None` if no estimator has a measured cost.
+/// `limits` are the errors of the particle filter on that plant.
 pub(super) fn panels(
     group: &Group,
     limits: &[limit::LimitRow],
@@ -41,9 +41,9 @@ pub(super) fn panels(
         .map(|name| Key::Line(palette.style(name), name))
         .collect();
     let limit_of = |scenario: &Scenario| {
-        let mut rows = limits.iter().filter(|row| {
-            group.friction && row.rate_hz == group.rate_hz && row.scenario == scenario.name
-        });
+        let mut rows = limits
+            .iter()
+            .filter(|row| row.rate_hz == group.rate_hz && row.scenario == scenario.name);
         let mut rms = |name| {
             rows.find(|row| row.estimator == name)
                 .map(|row| row.rms_rad_s)
@@ -214,8 +214,11 @@ mod tests {
         let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap().0;
         assert_eq!(svg.matches("instructions per update").count(), 2);
         assert!(svg.contains("particle filter: counts") && !svg.contains("unmeasured"));
-        // Results of another plant or rate are not drawn.
-        let svg = panels(&groups[0], &[], &palette).unwrap().unwrap().0;
-        assert!(!svg.contains("particle filter: counts"));
+        // Results of another rate are not drawn.
+        for rate_hz in [500.0, 2000.0] {
+            let others = limits.clone().map(|row| limit::LimitRow { rate_hz, ..row });
+            let svg = panels(&groups[0], &others, &palette).unwrap().unwrap().0;
+            assert!(!svg.contains("particle filter: counts"), "{rate_hz}");
+        }
     }
 }
