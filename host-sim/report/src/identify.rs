@@ -116,13 +116,18 @@ fn motion(comparison: &ModelComparison, count_rad_s: f64) -> Result<Svg, String>
     })
 }
 
+/// Each constant that the device file has, its value and the half-width of its interval, both relative to the
+/// value of the file.
+fn relative(quantities: &[Quantity]) -> Vec<(&Quantity, f64, f64)> {
+    let there = quantities.iter().filter(|quantity| quantity.file != 0.0);
+    there
+        .map(|q| (q, q.estimate.value / q.file, q.estimate.half / q.file.abs()))
+        .collect()
+}
+
 /// Each constant relative to its value in the device file, with its 95 % interval.
 fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
-    let parts: Vec<(&Quantity, f64, f64)> = quantities
-        .iter()
-        .filter(|quantity| quantity.file != 0.0)
-        .map(|q| (q, q.estimate.value / q.file, q.estimate.half / q.file.abs()))
-        .collect();
+    let parts = relative(quantities);
     let accepted = || parts.iter().filter(|(q, ..)| q.rejected.is_none());
     let reach = accepted().map(|(_, part, half)| (part - 1.0).abs() + half);
     let span = (1.15 * reach.fold(0.05, f64::max)).min(1.0);
@@ -180,4 +185,34 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
         plot.edges(canvas)?;
         plot.x_title(canvas, "identified value / value of the device file")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use experiments::identify::{Estimate, Unit};
+
+    #[test]
+    fn constants_are_relative_to_the_values_of_the_file() {
+        let quantity = |file| Quantity {
+            key: "large.coulomb_nm",
+            estimate: Estimate {
+                value: 3.0,
+                half: 0.5,
+                by_counts: false,
+            },
+            file,
+            unit: Unit {
+                name: "mN.m",
+                per_si: 1e3,
+                si: "N.m",
+            },
+            rejected: None,
+            vague: false,
+        };
+        let all = [2.0, 0.0, -4.0].map(quantity);
+        let found = relative(&all);
+        let found: Vec<_> = found.iter().map(|(_, part, half)| [*part, *half]).collect();
+        assert_eq!(found, [[1.5, 0.25], [-0.75, 0.125]]);
+    }
 }

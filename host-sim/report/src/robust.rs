@@ -139,6 +139,13 @@ fn verdicts(
 }
 
 impl Panel<'_> {
+    /// Where a value lies on the logarithmic axis: 0 at its left end or below, 1 at its right end or above.
+    fn part(&self, value: f64) -> f64 {
+        let [low, high] = self.axis;
+        let part = (self.factor * value / low).max(1.0).ln() / (high / low).ln();
+        part.min(1.0)
+    }
+
     fn draw(
         &self,
         canvas: &Canvas,
@@ -146,10 +153,7 @@ impl Panel<'_> {
         [left, right]: [f64; 2],
     ) -> Result<(), String> {
         let [low, high] = self.axis;
-        let place = |value: f64| {
-            let part = (self.factor * value / low).max(1.0).ln() / (high / low).ln();
-            left + part.min(1.0) * (right - left)
-        };
+        let place = |value: f64| left + self.part(value) * (right - left);
         canvas.text(self.title, (left, TOP - 18.0), Anchor::Left, LABEL, INK)?;
         let bottom = middle(scenes.len()) - 0.5 * ROW;
         let mut tick = low;
@@ -178,5 +182,24 @@ impl Panel<'_> {
             canvas.rectangle([(far - 2.0, y - 2.0), (far + 2.0, y + 2.0)], INK)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn torques_lie_on_axes_in_millinewtonmetres() {
+        // 100 mN.m on 1 to 1000, 1 mN.m on 0.01 to 100, in decades.
+        for (panel, value, part) in [(1, 0.1, 2.0 / 3.0), (3, 1e-3, 0.5), (0, 1.0, 1.0 / 3.0)] {
+            let found = PANELS[panel].part(value);
+            assert!(
+                (found - part).abs() < 1e-12,
+                "{}: {found}",
+                PANELS[panel].title
+            );
+        }
+        assert_eq!([0.0, 1e9].map(|value| PANELS[1].part(value)), [0.0, 1.0]);
     }
 }

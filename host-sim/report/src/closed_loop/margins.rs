@@ -185,3 +185,32 @@ pub(super) fn table(designs: &[Design]) -> Option<Markup> {
         }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptic_control::Margins;
+
+    #[test]
+    fn table_has_the_delays_in_milliseconds() {
+        let design = Design {
+            rate_hz: 1000.0,
+            margins: Margins {
+                modulus: 0.5,
+                gain: 3.0,
+                cos_phase: 0.95,
+                crossover_hz: 20.0,
+                delay_s: 0.0025,
+            },
+            estimator_delay_s: 0.0125,
+            open_loop: Vec::new(),
+        };
+        let table = table(&[design]).unwrap().into_string();
+        let cells: Vec<_> = (table.split("<td>").skip(1))
+            .map(|rest| rest.split('<').next().unwrap().parse::<f64>().unwrap())
+            .collect();
+        // 2.5 ms of 50 ms are 18 degrees.
+        assert_eq!(cells, [0.5, 3.0, 18.0, 2.5, 20.0, 12.5]);
+        assert!(super::table(&[]).is_none());
+    }
+}

@@ -153,3 +153,30 @@ fn cells(responses: &[Response]) -> Markup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_have_the_gain_farthest_from_1_in_decibels() {
+        // Of the band from 50 to 500 Hz alone: 6 and -20 dB.
+        let responses = [
+            (20.0, 30.0, 0.1),
+            (100.0, 2.0, 0.9),
+            (200.0, 0.1, 0.75),
+            (1000.0, 0.001, 0.2),
+        ]
+        .map(|(hz, gain, coherence)| Response {
+            hz,
+            gain,
+            phase_deg: 0.0,
+            coherence,
+        });
+        let cells = cells(&responses).into_string();
+        let shown: Vec<_> = (cells.split('>').skip(1).step_by(2))
+            .map(|rest| rest.split('<').next().unwrap())
+            .collect();
+        assert_eq!(shown[1..], ["\u{2212}20.0", "0.750"], "{cells}");
+    }
+}
