@@ -55,8 +55,8 @@ score_fields! {
         parasitic_mn_rms: "force", "rms, mN", Number, Mean, Smaller, true;
         /// 99th percentile of the magnitude over the ticks, mN.
         parasitic_mn_p99: "force", "99 %, mN", Number, Mean, Smaller, true;
-        /// RMS of the components from 50 to 500 Hz, which are felt as roughness, mN; `None` for less
-        /// than 0.25 s.
+        /// RMS of the components from 50 to 500 Hz, at most to half the sample rate, which are felt as
+        /// roughness, mN; `None` for less than 0.35 s, or at 100 Hz or less.
         parasitic_mn_tactile: "50-500 Hz", "rms, mN", Number, Mean, Smaller, true;
         /// Share of the ticks whose magnitude is below the fingertip's threshold, 0 to 1.
         below_threshold: "unnoticed", "% of time", Share, Mean, Larger, true;

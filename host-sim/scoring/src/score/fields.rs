@@ -73,8 +73,9 @@ score_fields! {
         /// parabola. The delay is positive if the estimate lags. `None` if the truth does not move
         /// or if no shift below 0.1 s is best.
         delay_ms: "delay", "ms", Number, Mean, Smaller, true, delay;
-        /// RMS of the error from 50 to 500 Hz, rad/s. In this band the fingertip is most sensitive.
-        /// `None` if the trace is shorter than 0.25 s.
+        /// RMS of the error from 50 to 500 Hz, at most to half the sample rate, rad/s. In this band
+        /// the fingertip is most sensitive. `None` if the trace is shorter than 0.35 s, or the rate
+        /// is 100 Hz or less.
         noise_rad_s: "noise", "rad/s", Number, Mean, Smaller, true, noise;
         /// Total variation of the estimate less that of the truth, per sample, rad/s; at least 0.
         chatter_rad_s: "chatter", "rad/s", Number, Mean, Smaller, true, chatter;
