@@ -52,7 +52,6 @@ impl Recorded {
         let name = log.name().to_owned();
         let Whole {
             recording,
-            board,
             device,
             stated,
         } = options.whole(&log, file)?;
@@ -71,7 +70,7 @@ impl Recorded {
             &parameters,
             &|| (),
         )?;
-        let mut rows = channels::rows(&recording, &board, &device, &replayed.estimates);
+        let mut rows = channels::rows(&recording, &device, &replayed.estimates);
         // An estimator that is left out has a channel without values.
         for (k, kind) in kinds.iter().enumerate() {
             let is_there = replayed
