@@ -20,8 +20,9 @@ const GAIN_OF_EDGE: f32 = 0.1;
 /// two channels come again after four edges, and their innovations have the opposite sign after two.
 const SECOND: f32 = 0.5;
 
-/// Square of a shift by the count, against the innovation of an edge, above which the stamp contradicts the count,
-/// counts².
+/// Square of the innovation of an edge over its variance, and of a shift against it by the count, counts², above
+/// which the stamp contradicts the count.
+const LARGE: f32 = 2.0;
 const CONTRADICTION: f32 = 0.5;
 
 /// Change of R in the product of two innovations or shifts, and by a count in R by the size of a shift.
@@ -76,8 +77,8 @@ impl<const K: usize> ModelBankState<K> {
     /// Changes R by the innovation `error` of an edge, of variance `variance`: by its correlation with the two
     /// before in parts of R, which finds an R that is nearly right, and by a product below 0, which raises one that
     /// is far too small. Between edges that are ticks apart the motion has changed: their product says nothing.
-    /// The `shift` of the position by the count, if it is against innovations of one sign for many edges: so far the
-    /// stamps are off.
+    /// Where many innovations have one sign and this one is large, the stamps are off by the `shift` of the position by
+    /// the count, if it is against them.
     #[inline(always)]
     pub(super) fn learn_noise_of_edges(
         &mut self,
@@ -97,7 +98,8 @@ impl<const K: usize> ModelBankState<K> {
         // Both ends are constants: the panic of `clamp` is removed.
         self.noise = noise.clamp(LEAST_OF_BOUNDARY, LARGEST_OF_BOUNDARY);
         let square = shift * shift;
-        let contradicts = error * shift < 0.0 && square > CONTRADICTION;
+        let is_opposed = error * shift < 0.0 && error * error > LARGE * variance;
+        let contradicts = is_opposed && square > CONTRADICTION;
         if contradicts && self.signs >= ONE_SIDED && square > self.noise {
             unlikely();
             self.noise = smaller(square, LARGEST_OF_COUNT);

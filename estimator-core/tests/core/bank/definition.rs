@@ -258,7 +258,8 @@ impl Definition {
                     0.0
                 };
                 let noise = (self.noise * (1.0 - 0.1 * of_two) + added).clamp(3e-4, 0.1);
-                let contradicts = error * shifted < 0.0 && shifted * shifted > 0.5;
+                let is_opposed = error * shifted < 0.0 && error * error > 2.0 * variance;
+                let contradicts = is_opposed && shifted * shifted > 0.5;
                 match contradicts && self.same >= 8 {
                     true => noise.max(shifted * shifted).min(1e4),
                     false => noise,
