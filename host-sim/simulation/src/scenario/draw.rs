@@ -31,4 +31,12 @@ mod tests {
         assert!((mean - 2.0).abs() < 0.1, "{mean}");
         assert!(draws.iter().any(|&x| x < -1.98) && draws.iter().any(|&x| x > 5.98));
     }
+
+    #[test]
+    fn both_signs_are_as_frequent() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        let signs: Vec<f64> = (0..10_000).map(|_| draw_sign(&mut random)).collect();
+        assert!(signs.iter().all(|sign| sign.abs() == 1.0));
+        assert!(signs.iter().sum::<f64>().abs() < 300.0);
+    }
 }

@@ -79,3 +79,33 @@ impl Scenario for Texture {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_xoshiro::rand_core::SeedableRng;
+
+    use super::*;
+
+    #[test]
+    fn frequency_passes_its_whole_range_in_each_sweep() {
+        for seed in 1..=5 {
+            let period_s = 1e-4;
+            let random = Xoshiro256PlusPlus::seed_from_u64(seed);
+            let mut texture = Texture::new(&Device::default(), period_s, random);
+            let ticks = (TAU / texture.sweep_rad_per_s / period_s) as u64;
+            let mut hz = |k: u64| {
+                let before = texture.turns;
+                texture.next_torque(k);
+                (texture.turns - before).rem_euclid(1.0) / period_s
+            };
+            let frequencies: Vec<f64> = (0..ticks).map(&mut hz).collect();
+            let lowest = frequencies.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+            let highest = frequencies.iter().fold(0.0, |a: f64, b| a.max(*b));
+            assert!((lowest / LOWEST_HZ - 1.0).abs() < 1e-3, "{seed}: {lowest}");
+            assert!(
+                (highest / HIGHEST_HZ - 1.0).abs() < 1e-3,
+                "{seed}: {highest}"
+            );
+        }
+    }
+}
