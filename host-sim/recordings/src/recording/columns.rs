@@ -8,10 +8,8 @@ use terminal::failure::Failure;
 
 use super::Recording;
 use super::board::Board;
-use super::encoder::Encoder;
-use super::encoder::absolute;
-use super::layout::sources::sources;
-use super::layout::{Layout, Place, Places};
+use super::encoder::{Encoder, absolute};
+use super::layout::{Layout, Place, Places, sources::sources};
 use super::options::units::WRAP;
 use super::options::{Column, ReadOptions};
 use super::records::Records;
@@ -20,8 +18,7 @@ use super::text::fields::is_without_value;
 use super::text::lines::LineNumbers;
 use super::text::row::Row;
 use super::text::thousands::Thousands;
-use super::times::clock;
-use super::times::clock::Gaps;
+use super::times::clock::{self, Gaps};
 use super::times::own_times::OwnTimes;
 use super::times::{self, Repeated, Replaced};
 use currents::{Current, measured_note};
@@ -106,11 +103,8 @@ impl<'a> Columns<'a> {
 
     /// Adds a row.
     pub(super) fn take(&mut self, row: &Row) -> Result<(), Failure> {
-        let read = self
-            .places
-            .iter()
-            .flatten()
-            .flat_map(|place| place.indices());
+        let places = self.places.iter().flatten();
+        let read = places.flat_map(|place| place.indices());
         let of_board = self.board.iter().flat_map(Board::indices);
         if row.is_cut_at(read.chain(of_board)) {
             self.cut = Some(row.line);
