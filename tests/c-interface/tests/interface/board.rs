@@ -20,8 +20,8 @@ fn allowed(row: &Row, in_rust: f64) -> f64 {
     let more = match row.name {
         "foaw-best-fit" => 23.0,
         "foaw-end-fit" => 22.0,
-        "imm-motor-edge" => 17.0,
-        "imm-adaptive-edge" => 16.0,
+        "imm-motor-edge" => 15.0,
+        "imm-adaptive-edge" => 21.0,
         _ if row.settling.is_window() => 13.0,
         _ if row.parameters.iter().any(Parameter::is_torque) || row.needs.edge => 13.0,
         _ => 6.0,
