@@ -592,7 +592,7 @@ typedef struct {
  State of `imm`, which the caller owns; valid after `limpid_imm_start`.
  */
 typedef struct {
-  uint32_t words[36];
+  uint32_t words[37];
 } limpid_imm_state_t;
 
 /*
@@ -606,7 +606,7 @@ typedef struct {
  State of `imm-edge`, which the caller owns; valid after `limpid_imm_edge_start`.
  */
 typedef struct {
-  uint32_t words[36];
+  uint32_t words[37];
 } limpid_imm_edge_state_t;
 
 /*
@@ -620,7 +620,7 @@ typedef struct {
  State of `imm-pair`, which the caller owns; valid after `limpid_imm_pair_start`.
  */
 typedef struct {
-  uint32_t words[26];
+  uint32_t words[27];
 } limpid_imm_pair_state_t;
 
 /*
@@ -634,7 +634,7 @@ typedef struct {
  State of `imm-motor`, which the caller owns; valid after `limpid_imm_motor_start`.
  */
 typedef struct {
-  uint32_t words[110];
+  uint32_t words[112];
 } limpid_imm_motor_state_t;
 
 /*
@@ -648,7 +648,7 @@ typedef struct {
  State of `imm-motor-edge`, which the caller owns; valid after `limpid_imm_motor_edge_start`.
  */
 typedef struct {
-  uint32_t words[110];
+  uint32_t words[112];
 } limpid_imm_motor_edge_state_t;
 
 /*
@@ -718,7 +718,7 @@ typedef struct {
  State of `imm-adaptive`, which the caller owns; valid after `limpid_imm_adaptive_start`.
  */
 typedef struct {
-  uint32_t words[93];
+  uint32_t words[95];
 } limpid_imm_adaptive_state_t;
 
 /*
@@ -732,7 +732,7 @@ typedef struct {
  State of `imm-adaptive-edge`, which the caller owns; valid after `limpid_imm_adaptive_edge_start`.
  */
 typedef struct {
-  uint32_t words[98];
+  uint32_t words[100];
 } limpid_imm_adaptive_edge_state_t;
 
 /*
