@@ -1,15 +1,9 @@
 //! Arming with a cause that is present, and with one that is past.
 
-use haptic_control::{Findings, Mode, Request, Safety, Stop};
+use haptic_control::{Findings, Mode, Request, Stop};
 
-const SAFETY: Safety = Safety {
-    settle: 20,
-    silence: Some(100),
-    disarm: Some(300),
-    missed: 4,
-    scenes: 8,
-};
-const WELL: Findings = Findings::WELL;
+use crate::safety_times::{SAFETY, WELL};
+
 const HOT: Findings = Findings {
     present: Some(Stop::Overload),
     ..WELL

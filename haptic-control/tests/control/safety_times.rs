@@ -2,14 +2,14 @@
 
 use haptic_control::{Findings, Mode, Order, Request, Safety, SafetyState, Stop};
 
-const SAFETY: Safety = Safety {
+pub(crate) const SAFETY: Safety = Safety {
     settle: 20,
     silence: Some(100),
     disarm: Some(300),
     missed: 4,
     scenes: 8,
 };
-const WELL: Findings = Findings::WELL;
+pub(crate) const WELL: Findings = Findings::WELL;
 
 fn ask(state: &mut SafetyState, request: Request) -> Order {
     SAFETY.tick(state, &WELL, Some(request))

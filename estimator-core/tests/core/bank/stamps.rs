@@ -68,11 +68,10 @@ impl Seen {
 /// that trusts it finds a velocity at which each stamp contradicts its count, and stays there.
 #[test]
 fn stamps_that_contradict_the_counts_are_not_followed() {
-    for (counts, rate, turns, step_s) in [
-        (65_536.0, 10e3, 10.0, 10e-6),
-        (4096.0, 10e3, 40.0, 10e-6),
-        (16_384.0, 5e3, 40.0, 4e-6),
-        (16_384.0, 10e3, 15.0, 10e-6),
+    for (counts, rate, turns) in [
+        (65_536.0, 10e3, 10.0),
+        (4096.0, 10e3, 40.0),
+        (16_384.0, 10e3, 15.0),
     ] {
         let bank: ImmEdge = ModelBank::with_edges(CLOCK, Hertz(rate)).expect("valid");
         // It speeds up for 0.3 s, and turns on.
@@ -81,12 +80,12 @@ fn stamps_that_contradict_the_counts_are_not_followed() {
             counts * turns * (began * began / 0.6 + (t - began)) + 0.37
         };
         let seen = Seen::new(rate, (1.2 * rate) as usize, 0.0, &place);
-        let seen = seen.with_coarse_stamps(rate, step_s);
+        let seen = seen.with_coarse_stamps(rate, 10e-6);
         let estimates = seen.run(&bank);
         let from = (0.4 * rate) as usize;
         let error = rms(&seen.velocities[from..], &estimates[from..]);
         let ratio = error / (counts * turns / rate);
-        println!("{counts} counts at {rate} Hz, {turns} turns/s, {step_s} s: {ratio}");
+        println!("{counts} counts at {rate} Hz, {turns} turns/s: {ratio}");
         assert!(ratio < 0.05, "{counts}: {ratio}");
     }
 }

@@ -1,7 +1,7 @@
 //! Text exports of TwinCAT Scope: a header of the file, lines of `key, value, value, ...` for the channels, and
 //! rows in which the channels of each sample time stand behind their time, in milliseconds.
 //!
-//! Source of the layout: the exports in the tests of pytcs 0.4 (C. Fabry, MIT licence).
+//! Source of the layout: the exports in the tests of pytcs, a reader for Python (C. Fabry, MIT licence).
 
 use super::Layout;
 use super::search::is_number;
@@ -83,8 +83,8 @@ mod tests {
             format!("{half}\t{current}\t{k}\t{}\n", 3 * k)
         };
         let text = format!(
-            "Name\tx\nFile\tC:\\x.csv\nStarttime of export\t132959733843760000\tMontag\t15:56:24.376\n\
-             Endtime of export\t132959733853750000\tMontag\t15:56:25.375\n\n\n{}{}{}{}{}\n{}EOF\n",
+            "Name\tx\nFile\tC:\\x.csv\nStarttime of export\t133500000000000000\tFreitag\t16:00:00.000\n\
+             Endtime of export\t133500000001990000\tFreitag\t16:00:00.199\n\n\n{}{}{}{}{}\n{}EOF\n",
             keys("Name", ["Current", "ActPos"]),
             keys("SampleTime[ms]", ["0,5", "1"]),
             keys("Unit", ["A (Current)", unit]),
