@@ -17,7 +17,7 @@ use crate::port::Port;
 use crate::questions::{AGAIN, Questions};
 use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refusal, silent};
 use crate::sent::ATTEMPTS;
-use crate::watch::is_enabled;
+use crate::watch::{is_disarmed, is_enabled};
 
 /// A connected board. After [`Board::disarm_at_the_end`] a drop disarms the board.
 pub(crate) struct Board {
@@ -278,30 +278,30 @@ impl Board {
         self.disarms = true;
     }
 
-    /// Disarms the board and waits until a frame shows it.
+    /// Disarms the board and waits until a frame shows it. A frame that has a cause may be from before the command.
     ///
     /// # Errors
     /// [`Failure::Check`] if the amplifiers stay enabled, [`Failure::Input`] if no frame comes.
     pub(crate) fn disarm(&mut self) -> Result<Frame, Failure> {
         self.disarms = true;
-        let mut enabled = false;
+        let mut last = None;
         let disarm = Command::Request(Request::Disarm);
-        let frame = self.ask(disarm, |message| match message {
+        let shown = self.ask(disarm, |message| match message {
             Message::Frame(frame) => {
-                enabled = is_enabled(&frame);
-                (!enabled).then_some(frame)
+                last = Some(frame);
+                is_disarmed(&frame).then_some(frame)
             }
             _ => None,
         })?;
-        match frame {
+        match shown.or(last) {
+            Some(frame) if is_enabled(&frame) => Err(Failure::Check(format!(
+                "{}: the amplifiers stay enabled after disarm; switch off their supply",
+                self.port.name()
+            ))),
             Some(frame) => {
                 self.disarms = false;
                 Ok(frame)
             }
-            None if enabled => Err(Failure::Check(format!(
-                "{}: the amplifiers stay enabled after disarm; switch off their supply",
-                self.port.name()
-            ))),
             None => Err(self.silent()),
         }
     }

@@ -12,6 +12,11 @@ pub(crate) fn is_enabled(frame: &Frame) -> bool {
     Mode::from_code(frame.state).is_none_or(Mode::is_enabled)
 }
 
+/// Whether a frame has the state to which the command `disarm` leads.
+pub(crate) fn is_disarmed(frame: &Frame) -> bool {
+    Mode::from_code(frame.state) == Some(Mode::Boot) && frame.cause == Stop::None as u8
+}
+
 /// State and cause of a frame.
 pub(crate) fn state(frame: &Frame) -> String {
     let state = Mode::from_code(frame.state).map(Mode::as_str);

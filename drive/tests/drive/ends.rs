@@ -110,10 +110,27 @@ fn board_that_does_not_arm_is_told_and_disarmed() {
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, DISARM]);
 }
 
+/// A frame of a stopped board may be from before the command, which clears the cause.
+#[test]
+fn stopped_board_is_disarmed_once_a_frame_has_no_cause() {
+    for (disarms_after, said) in [(Some(100), "boot"), (None, "safe")] {
+        let board = Board::new(Script {
+            begin: Mode::Safe,
+            disarms_after,
+            ..Script::default()
+        });
+        let (output, commands) = board.run(&[&["disarm"][..], &BRIEFLY].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(told, format!("disarmed: state {said}, cause none\n"));
+        assert_eq!(deduplicated(commands), [DISARM]);
+    }
+}
+
 #[test]
 fn board_that_stays_enabled_after_disarm_is_told() {
     let board = Board::new(Script {
-        disarms: false,
+        disarms_after: None,
         ..Script::default()
     });
     let (output, _) = board.run(&[&["arm", "--seconds", "0.2"][..], &BRIEFLY].concat());

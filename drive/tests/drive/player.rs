@@ -62,6 +62,8 @@ struct Player<'a> {
     last: Option<u32>,
     /// Frame at which the command `select` came.
     selected: Option<u32>,
+    /// Frame at which the first command `disarm` came.
+    disarmed: Option<u32>,
     /// Questions for the identity so far.
     questions: u32,
     /// Commands with a value so far.
@@ -95,6 +97,7 @@ impl<'a> Player<'a> {
             asked: None,
             last: None,
             selected: None,
+            disarmed: None,
             questions: 0,
             values: 0,
             selections: 0,
@@ -139,7 +142,13 @@ impl<'a> Player<'a> {
                 self.bytes.extend(now);
             }
             Command::Request(Request::Arm) => self.state = self.script.armed,
-            Command::Request(Request::Disarm) if self.script.disarms => self.state = Mode::Boot,
+            Command::Request(Request::Disarm) => {
+                let from = *self.disarmed.get_or_insert(self.seq);
+                let after = self.script.disarms_after;
+                if after.is_some_and(|frames| self.seq >= from + frames) {
+                    (self.state, self.cause) = (Mode::Boot, Stop::None);
+                }
+            }
             Command::Request(Request::Select(_)) => {
                 self.selected = Some(self.seq);
                 self.selections += 1;

@@ -67,8 +67,8 @@ pub(super) struct Script {
     pub(super) strokes_end_after: Option<u32>,
     /// Settings at the begin.
     pub(super) settings: Settings,
-    /// Whether the board takes the command `disarm`.
-    pub(super) disarms: bool,
+    /// Frames from the first command `disarm` until the board follows such commands; `None`: it never does.
+    pub(super) disarms_after: Option<u32>,
     /// Commands with a value that arrive damaged: first and last, by their number from 1.
     pub(super) damages: (u32, u32),
     /// Whether noise reaches the command channel, which the board tells every 100 frames.
@@ -109,7 +109,7 @@ impl Default for Script {
             supply: None,
             strokes_end_after: None,
             settings: Settings::COMMISSIONED,
-            disarms: true,
+            disarms_after: Some(0),
             damages: (0, 0),
             garbles: false,
         }
