@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use crate::guide::Guide;
 use crate::order::Order;
+use crate::storing::Storing;
 use crate::undo::Undo;
 
 /// Why a procedure ends whose page has closed or freezes.
@@ -26,6 +27,8 @@ pub(crate) struct Bench {
     coming: Vec<f32>,
     /// The values of the board, each at the number of its setting.
     settings: Option<Vec<f32>>,
+    /// The order to store that waits.
+    storing: Option<Storing>,
     /// Outcome of the latest order to store, and their number.
     stored: Option<(String, u32)>,
     guide: Option<Guide>,
@@ -38,7 +41,7 @@ pub(crate) struct Bench {
 impl Bench {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
-        (self.settings, self.undo) = (None, None);
+        (self.settings, self.undo, self.storing) = (None, None, None);
         if let Some(guide) = &mut self.guide {
             guide.restarted();
         }
@@ -75,7 +78,13 @@ impl Bench {
                 }
             }
             Message::Stored(stored) => {
-                let words = Saved::from_code(stored.outcome).map_or_else(
+                let outcome = Saved::from_code(stored.outcome);
+                let now = Instant::now();
+                (self.storing).take_if(|storing| !storing.waits(outcome, now));
+                if self.storing.is_some() {
+                    return;
+                }
+                let words = outcome.map_or_else(
                     || format!("outcome {}", stored.outcome),
                     |saved| outcome_words(saved).to_owned(),
                 );
@@ -100,17 +109,25 @@ impl Bench {
     /// `is_known`.
     pub(crate) fn order(&mut self, order: &Order, is_known: bool) -> bool {
         let is_guided = self.guide.as_ref().is_some_and(Guide::runs);
+        // A later command replaces the order to store.
+        if *order != Order::Alive && order.command().is_some() {
+            self.storing = None;
+        }
         match order {
             Order::Guide { name } => {
                 let is_free = is_known && !is_guided && self.undo.is_none();
                 if let Some(what) = guided(name).filter(|_| is_free) {
                     self.guide = Some(Guide::start(what));
-                    self.before = None;
+                    (self.before, self.storing) = (None, None);
                 }
                 false
             }
             // The flash would keep what an ended procedure has tried.
-            Order::Store if self.undo.is_some() => false,
+            Order::Store if self.undo.is_some() || is_guided => false,
+            Order::Store => {
+                self.storing = Some(Storing::new(Instant::now()));
+                true
+            }
             Order::Set { setting, .. } if !is_guided => {
                 if let Some(undo) = &mut self.undo {
                     undo.set(*setting);
@@ -121,11 +138,13 @@ impl Bench {
         }
     }
 
-    /// The bytes of a procedure for the board. Without a page that commands, the procedure ends.
+    /// The bytes for the board that are due: of a procedure, or of what is done again. Without a page that commands, the procedure ends.
     pub(crate) fn take_bytes(&mut self, is_abandoned: bool) -> Vec<u8> {
         let Some(guide) = self.guide.as_mut().filter(|guide| guide.runs()) else {
             let now = Instant::now();
-            return (self.undo.as_mut()).map_or_else(Vec::new, |undo| undo.bytes(now));
+            let mut bytes = (self.undo.as_mut()).map_or_else(Vec::new, |undo| undo.bytes(now));
+            bytes.extend((self.storing.iter_mut()).flat_map(|storing| storing.bytes(now)));
+            return bytes;
         };
         if is_abandoned {
             self.abandon(NOT_HEARD);
@@ -176,6 +195,7 @@ mod tests {
     use drivers::link::{Hello, Setting, Stored};
 
     use super::*;
+    use crate::undo::AGAIN;
 
     fn setting(number: u8, value: f32) -> Message {
         Message::Setting(Setting {
@@ -210,6 +230,28 @@ mod tests {
             let told = &bench.json()["stored"];
             assert_eq!(told["number"], number);
             assert!(told["words"].as_str().is_some_and(|w| w.contains("disarm")));
+        }
+    }
+
+    /// The board is certain that its amplifiers are disabled some frames after they are.
+    #[test]
+    fn order_to_store_that_comes_too_early_is_sent_again_unless_another_one_follows() {
+        let outcome = |saved: Saved| {
+            Message::Stored(Stored {
+                outcome: saved as u8,
+            })
+        };
+        for (other, waits) in [(Order::Alive, true), (Order::Arm, false)] {
+            let mut bench = Bench::default();
+            assert!(bench.order(&Order::Store, true) && bench.order(&other, true));
+            bench.message(&outcome(Saved::Enabled));
+            assert_eq!(bench.stored.is_none(), waits);
+            std::thread::sleep(AGAIN);
+            let sent = bench.take_bytes(false);
+            assert_eq!(sent == encode(Command::Store), waits, "{sent:?}");
+            bench.message(&outcome(Saved::Stored));
+            let told = &bench.json()["stored"];
+            assert_eq!(told["words"], "settings stored");
         }
     }
 

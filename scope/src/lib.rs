@@ -19,6 +19,7 @@ mod selection;
 mod server;
 mod session;
 mod source;
+mod storing;
 mod stream;
 mod tactile;
 mod token;

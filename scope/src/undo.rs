@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use drive::guided::Guided;
 use drivers::{Command, Setting, encode};
 
-/// Time after which settings that the board has not confirmed are sent again.
-const AGAIN: Duration = Duration::from_millis(200);
+/// Time after which what the board has not followed is sent again.
+pub(crate) const AGAIN: Duration = Duration::from_millis(200);
 
 /// What brings a board back to the settings from before a procedure. A setting that the procedure has tried would
 /// otherwise be stored by the next order to store.

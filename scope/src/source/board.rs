@@ -21,9 +21,7 @@ use crate::desk::{Desk, GAP_S};
 use crate::facts;
 use crate::hub::Hub;
 use crate::order::Order;
-
-/// Interval of the question for the identity until it is answered, and of the order to disarm until it is followed.
-const AGAIN: Duration = Duration::from_millis(200);
+use crate::undo::AGAIN;
 
 /// Why a procedure of another program ends.
 const FOUND_ENABLED: &str = "the board was enabled by another program";
