@@ -110,7 +110,7 @@ impl Bench {
     pub(crate) fn order(&mut self, order: &Order, is_known: bool) -> bool {
         let is_guided = self.guide.as_ref().is_some_and(Guide::runs);
         // A later command replaces the order to store.
-        if *order != Order::Alive && order.command().is_some() {
+        if order.changes_the_board() {
             self.storing = None;
         }
         match order {
@@ -241,7 +241,11 @@ mod tests {
                 outcome: saved as u8,
             })
         };
-        for (other, waits) in [(Order::Alive, true), (Order::Arm, false)] {
+        for (other, waits) in [
+            (Order::Alive, true),
+            (Order::Settings, true),
+            (Order::Arm, false),
+        ] {
             let mut bench = Bench::default();
             assert!(bench.order(&Order::Store, true) && bench.order(&other, true));
             bench.message(&outcome(Saved::Enabled));

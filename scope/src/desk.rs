@@ -158,7 +158,7 @@ impl Desk {
             _ => {}
         }
         let command = order.command()?;
-        if command != Command::Request(Request::KeepAlive) {
+        if order.changes_the_board() {
             self.refusals.forget();
         }
         Some(command)
@@ -302,7 +302,31 @@ fn is_anew(last: &Frame, frame: &Frame) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use drivers::link::Rejected;
+
     use super::*;
+
+    /// The page asks for the settings each second, also between a refusal and the next status.
+    #[test]
+    fn refusal_is_told_until_the_next_command_and_a_question_is_none() {
+        let (hub, _orders) = Hub::new("token".to_owned(), Value::Null);
+        let mut desk = Desk::new(hub, &Device::default()).expect("a desk");
+        for unknown in [0, 1] {
+            let counts = Rejected {
+                unknown,
+                ..Rejected::default()
+            };
+            desk.message(counts.into(), None);
+        }
+        for (order, is_told) in [
+            (Order::Alive, true),
+            (Order::Settings, true),
+            (Order::Scene { number: 0 }, false),
+        ] {
+            assert!(desk.order(&order).is_some());
+            assert_eq!(!desk.refusals.json().is_null(), is_told, "{order:?}");
+        }
+    }
 
     /// The thread of a procedure may not have seen the stop yet.
     #[test]

@@ -152,6 +152,12 @@ impl Order {
         *self != Self::Disarm && self.command().is_some()
     }
 
+    /// Whether the order is a command with an effect of its own. A page says again and again that it lives, and asks for
+    /// the settings each second.
+    pub(crate) fn changes_the_board(&self) -> bool {
+        !matches!(self, Self::Alive | Self::Settings) && self.command().is_some()
+    }
+
     /// The command of the link that the order is, if it is one.
     pub(crate) fn command(&self) -> Option<Command> {
         Some(match *self {
