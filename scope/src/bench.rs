@@ -20,6 +20,9 @@ const NOT_HEARD: &str = "ended, as the page was not heard";
 /// Why a procedure ends with the server.
 const SERVER_ENDS: &str = "ended, as the server ends";
 
+/// What is told of an order to store that has no answer.
+const NO_OUTCOME: &str = "no answer of the board came to the order to store; store again";
+
 /// Settings and procedures of a board.
 #[derive(Default)]
 pub(crate) struct Bench {
@@ -29,8 +32,10 @@ pub(crate) struct Bench {
     settings: Option<Vec<f32>>,
     /// The order to store that waits.
     storing: Option<Storing>,
-    /// Outcome of the latest order to store, and their number.
-    stored: Option<(String, u32)>,
+    /// Outcome of the latest order to store, once it has come.
+    stored: Option<String>,
+    /// Number of the outcomes so far.
+    outcomes: u32,
     guide: Option<Guide>,
     /// The settings at the begin of the procedure, which asks for them before it changes one.
     before: Option<Vec<f32>>,
@@ -88,11 +93,15 @@ impl Bench {
                     || format!("outcome {}", stored.outcome),
                     |saved| outcome_words(saved).to_owned(),
                 );
-                let number = self.stored.as_ref().map_or(0, |(_, number)| *number) + 1;
-                self.stored = Some((words, number));
+                self.tell_outcome(words);
             }
             _ => {}
         }
+    }
+
+    /// Keeps the outcome of an order to store for the page.
+    fn tell_outcome(&mut self, words: String) {
+        (self.stored, self.outcomes) = (Some(words), self.outcomes + 1);
     }
 
     /// Takes the settings of an answer.
@@ -125,7 +134,8 @@ impl Bench {
             // The flash would keep what an ended procedure has tried.
             Order::Store if self.undo.is_some() || is_guided => false,
             Order::Store => {
-                self.storing = Some(Storing::new(Instant::now()));
+                // The outcome of the order before is none of this one.
+                (self.storing, self.stored) = (Some(Storing::new(Instant::now())), None);
                 true
             }
             Order::Set { setting, .. } if !is_guided => {
@@ -142,6 +152,9 @@ impl Bench {
     pub(crate) fn take_bytes(&mut self, is_abandoned: bool) -> Vec<u8> {
         let Some(guide) = self.guide.as_mut().filter(|guide| guide.runs()) else {
             let now = Instant::now();
+            if (self.storing.take_if(|storing| storing.is_lost(now))).is_some() {
+                self.tell_outcome(NO_OUTCOME.to_owned());
+            }
             let mut bytes = (self.undo.as_mut()).map_or_else(Vec::new, |undo| undo.bytes(now));
             bytes.extend((self.storing.iter_mut()).flat_map(|storing| storing.bytes(now)));
             return bytes;
@@ -176,10 +189,11 @@ impl Bench {
 
     pub(crate) fn json(&self) -> Value {
         let stored = self.stored.as_ref();
+        let number = self.outcomes;
         json!({
             "settings": self.settings,
             "undoes": self.undo.is_some(),
-            "stored": stored.map(|(words, number)| json!({"words": words, "number": number})),
+            "stored": stored.map(|words| json!({"words": words, "number": number})),
             "guide": self.guide.as_ref().map(Guide::json),
         })
     }
@@ -256,6 +270,20 @@ mod tests {
             bench.message(&outcome(Saved::Stored));
             let told = &bench.json()["stored"];
             assert_eq!(told["words"], "settings stored");
+        }
+    }
+
+    /// What the page shows after an order is none of the order before.
+    #[test]
+    fn outcome_of_a_store_is_not_told_of_the_next_one() {
+        let mut bench = Bench::default();
+        for number in 1..3 {
+            assert!(bench.order(&Order::Store, true));
+            assert!(bench.json()["stored"].is_null());
+            let outcome = Saved::Stored as u8;
+            bench.message(&Message::Stored(Stored { outcome }));
+            let told = json!({"words": "settings stored", "number": number});
+            assert_eq!(bench.json()["stored"], told);
         }
     }
 

@@ -9,6 +9,9 @@ use crate::undo::AGAIN;
 /// Longest wait until the board is certain that its amplifiers are disabled.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// Longest wait for an answer: the flash may have to be erased, and an emulated board may be slow.
+const ANSWER: Duration = Duration::from_secs(10);
+
 /// An order to store. For some frames after its amplifiers are disabled the board is not certain of it, and refuses the
 /// order, which is sent again then.
 pub(crate) struct Storing {
@@ -33,6 +36,11 @@ impl Storing {
         let is_early = now.saturating_duration_since(self.begin) < PATIENCE;
         self.is_refused = is_early && outcome == Some(Saved::Enabled);
         self.is_refused
+    }
+
+    /// Whether the answer is lost.
+    pub(crate) fn is_lost(&self, now: Instant) -> bool {
+        !self.is_refused && now.saturating_duration_since(self.sent) >= ANSWER
     }
 
     /// The bytes for the board that are due.
@@ -60,8 +68,10 @@ mod tests {
         assert!(storing.bytes(early).is_empty());
         assert_eq!(storing.bytes(begin + AGAIN), store);
         assert!(storing.bytes(begin + 5 * AGAIN).is_empty(), "sent once");
+        assert!(!storing.is_lost(begin + AGAIN + ANSWER - Duration::from_millis(1)));
         assert!(!storing.waits(Some(Saved::Enabled), begin + PATIENCE));
         assert!(storing.bytes(begin + 2 * PATIENCE).is_empty());
+        assert!(storing.is_lost(begin + AGAIN + ANSWER));
         for outcome in [Some(Saved::Stored), Some(Saved::Full), None] {
             assert!(!Storing::new(begin).waits(outcome, begin), "{outcome:?}");
         }
