@@ -192,7 +192,7 @@ impl Hub {
         if self.orders.try_send(order).is_err() {
             self.counts.flooded.fetch_add(1, Ordering::Relaxed);
             if disarms {
-                self.left.store(true, Ordering::Relaxed);
+                self.left.store(true, Ordering::Release);
             }
         }
     }
@@ -209,14 +209,14 @@ impl Hub {
             *locked(&self.commander) = None;
             self.order(Order::Hand { at: None });
             // No order: a full queue must not lose it.
-            self.left.store(true, Ordering::Relaxed);
+            self.left.store(true, Ordering::Release);
         }
     }
 
     /// Whether the board has to be disarmed because the page that commanded has left, or found no room for
-    /// its order; once.
+    /// its order; once. The orders from before it can be taken from then on, and come before the disarm.
     pub(crate) fn take_left(&self) -> bool {
-        self.left.swap(false, Ordering::Relaxed)
+        self.left.swap(false, Ordering::AcqRel)
     }
 
     /// Whether the page that commands was not heard for so long that its hand has to let go.

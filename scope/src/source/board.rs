@@ -175,6 +175,8 @@ impl RealBoard {
             if is_silent != was_silent.is_some() {
                 was_silent = self.turned(is_silent, desk)?;
             }
+            // Before the orders: one that comes later is of another page.
+            let is_left = desk.hub.take_left();
             while let Ok(order) = orders.try_recv() {
                 // A board that is not heard gets no command but the one that disarms: it ends a scene by itself.
                 if is_silent && order.needs_an_answer() {
@@ -185,7 +187,7 @@ impl RealBoard {
                 }
             }
             // After the orders of the page that has left.
-            if desk.hub.take_left() {
+            if is_left {
                 self.disarm(desk, PAGE_LEFT)?;
             }
             let bytes = desk.take_bytes();

@@ -99,18 +99,7 @@ impl Source for Emulated {
             ..Setup::default()
         };
         while !hub.stops() {
-            let seat = Seat {
-                table: Arc::clone(&table),
-                parser: Parser::default(),
-                truths: Truths::default(),
-                pacer: Pacer::new(),
-                restarts: 0,
-                is_held: false,
-                heard_ns: 0,
-                is_silent: false,
-                frame_ticks: 1,
-                last_enables: [false; 2],
-            };
+            let seat = Seat::new(&table);
             live::run(&self.image, &setup, Box::new(seat))?;
             let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
             table.restarts = false;
@@ -147,6 +136,23 @@ struct Seat {
     /// Control ticks of a frame.
     frame_ticks: usize,
     last_enables: [bool; 2],
+}
+
+impl Seat {
+    fn new(table: &Arc<Mutex<Table>>) -> Self {
+        Self {
+            table: Arc::clone(table),
+            parser: Parser::default(),
+            truths: Truths::default(),
+            pacer: Pacer::new(),
+            restarts: 0,
+            is_held: false,
+            heard_ns: 0,
+            is_silent: false,
+            frame_ticks: 1,
+            last_enables: [false; 2],
+        }
+    }
 }
 
 impl Client for Seat {
@@ -205,9 +211,16 @@ impl Client for Seat {
         if is_silent && !was_silent {
             acts.send.extend(encode(desk.disarm(SILENCE_ENDS)));
         }
-        while seen.waiting + acts.send.len() < WAITING
-            && let Ok(order) = orders.try_recv()
-        {
+        // Before the orders: one that comes later is of another page.
+        let is_left = desk.hub.take_left();
+        loop {
+            let has_room = seen.waiting + acts.send.len() < WAITING;
+            if !has_room && !is_left {
+                break;
+            }
+            let Ok(order) = orders.try_recv() else {
+                break;
+            };
             match &order {
                 Order::Restart => *restarts = true,
                 Order::Fault { name } => {
@@ -220,7 +233,8 @@ impl Client for Seat {
                 }
                 _ => {}
             }
-            if is_silent && order.needs_an_answer() {
+            // What has to wait would follow the disarm of the page that has left.
+            if (is_silent || !has_room) && order.needs_an_answer() {
                 continue;
             }
             if let Some(command) = desk.order(&order) {
@@ -228,7 +242,7 @@ impl Client for Seat {
             }
         }
         // After the orders of the page that has left.
-        if desk.hub.take_left() {
+        if is_left {
             acts.send.extend(encode(desk.disarm(PAGE_LEFT)));
         }
         acts.send.extend(desk.take_bytes());
@@ -256,4 +270,48 @@ impl Client for Seat {
 fn shifted(enables: &[(u64, [bool; 2])], offset_s: f64) -> Vec<(u64, [bool; 2])> {
     let offset = (offset_s * 1e9) as u64;
     enables.iter().map(|(at, on)| (at + offset, *on)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use haptic_control::Request;
+
+    use super::*;
+
+    /// The line of a board in slow motion takes the orders of a page later than they come.
+    #[test]
+    fn order_that_waits_for_the_line_does_not_follow_the_disarm_of_its_page() {
+        let (hub, orders) = Hub::new("token".to_owned(), Value::Null);
+        let desk = Desk::new(Arc::clone(&hub), &Device::default()).expect("a desk");
+        let table = Table {
+            desk,
+            orders,
+            restarts: false,
+            offset_s: 0.0,
+        };
+        let mut seat = Seat::new(&Arc::new(Mutex::new(table)));
+        let mut sent = |waiting| {
+            let mut acts = Acts::default();
+            let seen = Seen {
+                at_ns: 1,
+                sent: &[],
+                waiting,
+                ticks: &[],
+                restarts: 0,
+                currents: [0.0; 2],
+                enables: &[],
+                hand: None,
+            };
+            assert!(seat.look(&seen, &mut acts));
+            acts.send
+        };
+        let page = hub.enter();
+        assert!(hub.join(page));
+        let [arm, disarm] = [Request::Arm, Request::Disarm].map(|it| encode(Command::Request(it)));
+        hub.order(Order::Arm);
+        assert_eq!((sent(WAITING), sent(0)), (Vec::new(), arm.to_vec()));
+        hub.order(Order::Arm);
+        hub.leave(page);
+        assert_eq!((sent(WAITING), sent(0)), (disarm.to_vec(), Vec::new()));
+    }
 }
