@@ -23,6 +23,9 @@ const SERVER_ENDS: &str = "ended, as the server ends";
 /// What is told of an order to store that has no answer.
 const NO_OUTCOME: &str = "no answer of the board came to the order to store; store again";
 
+/// What is told of an order to store that waits while the board starts again, with the settings of its flash.
+const NOT_STORED: &str = "not stored: the board has started again";
+
 /// Settings and procedures of a board.
 #[derive(Default)]
 pub(crate) struct Bench {
@@ -46,7 +49,10 @@ pub(crate) struct Bench {
 impl Bench {
     /// The board has started again.
     pub(crate) fn restarted(&mut self) {
-        (self.settings, self.undo, self.storing) = (None, None, None);
+        (self.settings, self.undo) = (None, None);
+        if self.storing.take().is_some() {
+            self.tell_outcome(NOT_STORED.to_owned());
+        }
         if let Some(guide) = &mut self.guide {
             guide.restarted();
         }

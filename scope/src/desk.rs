@@ -37,6 +37,8 @@ pub(crate) struct Desk {
     batch: Batch,
     recorder: Option<Recorder>,
     hello: Option<Hello>,
+    /// Whether the identity has come since the latest frame. A board that starts tells it before its first frame.
+    is_hello_new: bool,
     last: Option<Frame>,
     /// Time of the last row, s.
     t: f64,
@@ -61,6 +63,7 @@ impl Desk {
             batch: Batch::new(),
             recorder: None,
             hello: None,
+            is_hello_new: false,
             last: None,
             t: 0.0,
             refusals: Refusals::default(),
@@ -202,7 +205,7 @@ impl Desk {
         self.bench.message(&message);
         match message {
             Message::Hello(hello) => {
-                self.hello = Some(hello);
+                (self.hello, self.is_hello_new) = (Some(hello), true);
                 self.hub.identify(self.hello);
             }
             Message::Frame(frame) => self.frame(&frame, truth),
@@ -228,8 +231,13 @@ impl Desk {
         if let Some(truth) = truth {
             self.t = truth.t;
         }
+        let is_hello_new = std::mem::take(&mut self.is_hello_new);
         if self.last.is_some_and(|last| is_anew(&last, frame)) {
             self.forget();
+            self.bench.restarted();
+            if let Some(hello) = self.hello.filter(|_| is_hello_new) {
+                self.bench.message(&hello.into());
+            }
         }
         let mode = |frame: &Frame| Mode::from_code(frame.state);
         let before = self.last.as_ref().and_then(mode);
@@ -326,6 +334,37 @@ mod tests {
             assert!(desk.order(&order).is_some());
             assert_eq!(!desk.refusals.json().is_null(), is_told, "{order:?}");
         }
+    }
+
+    /// Nobody else sees the restart of a board at a port. An order to store would store what the flash had.
+    #[test]
+    fn start_that_the_numbers_of_the_frames_tell_ends_procedure_and_order_to_store() {
+        let (hub, _orders) = Hub::new("token".to_owned(), Value::Null);
+        let mut desk = Desk::new(hub, &Device::default()).expect("a desk");
+        let mut start = |orders: &[Order], cause: Stop| {
+            let (old, new) = (Hello::default(), cause as u8);
+            let new = Hello { cause: new, ..old };
+            desk.message(old.into(), None);
+            let frame = Frame {
+                seq: 100,
+                tick: 1000,
+                ..Frame::default()
+            };
+            desk.message(frame.into(), None);
+            for order in orders {
+                let _ = desk.order(order);
+            }
+            desk.message(new.into(), None);
+            desk.message(Frame::default().into(), None);
+            desk.bench.json()
+        };
+        let name = "bring-up".to_owned();
+        let told = start(&[Order::Guide { name }], Stop::Watchdog);
+        let said = "bring-up: the board has started again, cause watchdog";
+        assert_eq!(told["guide"]["failure"], said);
+        let told = start(&[Order::Store], Stop::None);
+        let said = "not stored: the board has started again";
+        assert_eq!(told["stored"]["words"], said);
     }
 
     /// The thread of a procedure may not have seen the stop yet.
