@@ -7,42 +7,48 @@ const PENDING_S: f64 = 0.5;
 
 /// The selected scene.
 pub(crate) struct Selection {
-    scene: u8,
-    /// The scene before the latest order.
-    before: u8,
-    /// Time of the latest order, s.
-    at: f64,
+    /// The scene without the latest orders.
+    settled: u8,
+    /// Latest orders, each with its time, s: the board may refuse them still.
+    pending: Vec<(u8, f64)>,
 }
 
 impl Selection {
     /// No scene.
     pub(crate) const NONE: Self = Self {
-        scene: SceneKind::Off.number(),
-        before: SceneKind::Off.number(),
-        at: f64::NEG_INFINITY,
+        settled: SceneKind::Off.number(),
+        pending: Vec::new(),
     };
 
     /// Number of the scene.
-    pub(crate) const fn scene(&self) -> u8 {
-        self.scene
+    pub(crate) fn scene(&self) -> u8 {
+        self.pending
+            .last()
+            .map_or(self.settled, |(scene, _)| *scene)
     }
 
     /// A page has ordered a scene.
     pub(crate) fn order(&mut self, scene: u8, now: f64) {
-        *self = Self {
-            scene,
-            before: self.scene,
-            at: now,
-        };
+        self.settle(now);
+        self.pending.push((scene, now));
     }
 
-    /// The board has refused a selection.
+    /// The board has refused a selection: it admits no scene in closed loop. One in open loop that was ordered since
+    /// stays.
     pub(crate) fn refused(&mut self, now: f64) {
-        if self.is_pending(now) {
-            *self = Self {
-                scene: self.before,
-                ..Self::NONE
-            };
+        self.settle(now);
+        self.pending.retain(|(scene, _)| {
+            let kind = SceneKind::ALL.get(usize::from(*scene));
+            !kind.is_some_and(|kind| kind.is_closed_loop())
+        });
+    }
+
+    /// Keeps the orders that the board may refuse still.
+    fn settle(&mut self, now: f64) {
+        let is_late = |(_, at): &(u8, f64)| now >= at + PENDING_S;
+        let number = self.pending.iter().take_while(|it| is_late(it)).count();
+        if let Some((scene, _)) = self.pending.drain(..number).next_back() {
+            self.settled = scene;
         }
     }
 
@@ -54,13 +60,10 @@ impl Selection {
             Some(Mode::Boot) => before.is_some_and(Mode::is_enabled),
             _ => false,
         };
-        if is_off && !self.is_pending(now) {
+        self.settle(now);
+        if is_off && self.pending.is_empty() {
             *self = Self::NONE;
         }
-    }
-
-    fn is_pending(&self, now: f64) -> bool {
-        now < self.at + PENDING_S
     }
 }
 
@@ -115,6 +118,17 @@ mod tests {
         // A refusal of another command.
         selection.refused(3.2);
         assert_eq!(selection.scene(), WALL);
+        // The refusal of a scene comes after the next order.
+        let open = SceneKind::Excite.number();
+        for (next, shown) in [(open, open), (WALL, OFF)] {
+            let mut selection = Selection::NONE;
+            selection.order(DETENTS, 0.0);
+            selection.order(next, 0.1);
+            selection.refused(0.2);
+            assert_eq!(selection.scene(), shown);
+            selection.frame(Some(Mode::Armed), Some(Mode::Running), 1.0);
+            assert_eq!(selection.scene(), shown);
+        }
         let mut selection = Selection::NONE;
         selection.order(WALL, 0.0);
         selection.frame(Some(Mode::Safe), Some(Mode::Safe), 0.1);
