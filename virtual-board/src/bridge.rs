@@ -24,6 +24,9 @@ const CHUNK: usize = 4096;
 const WAITING: usize = 256;
 /// Virtual time from which on the run is in real time. The emulator translates the image's code before.
 const STARTED: Duration = Duration::from_millis(100);
+/// Lag from which on it is not made up for: the board then runs in slow motion, instead of running too fast later, when
+/// its client would be too slow for it.
+const LAG: Duration = Duration::from_millis(20);
 /// Lag behind real time from which on it is told, s; then each time that it has doubled.
 pub(crate) const LAG_S: f64 = 0.05;
 
@@ -96,8 +99,10 @@ pub(crate) struct Served {
     /// Clients that have been refused and have not gone.
     refused: Vec<TcpStream>,
     stop: Arc<AtomicBool>,
-    /// Real time at which virtual time was [`STARTED`].
+    /// Real time at which virtual time was [`STARTED`], with the lag that is not made up for.
     since: Option<Instant>,
+    /// The lag that is not made up for.
+    slow: Duration,
     /// Lag that was told last, s.
     told_s: f64,
     pub(crate) pace: Pace,
@@ -112,6 +117,7 @@ impl Served {
             refused: Vec::new(),
             stop,
             since: None,
+            slow: Duration::ZERO,
             pace: Pace::default(),
             told_s: 0.5 * LAG_S,
         }
@@ -151,11 +157,17 @@ impl Served {
         if virtual_time < STARTED {
             return true;
         }
-        let real = self.since.get_or_insert_with(Instant::now).elapsed() + STARTED;
+        let since = self.since.get_or_insert_with(Instant::now);
+        let real = since.elapsed() + STARTED;
         if let Some(early) = virtual_time.checked_sub(real) {
             std::thread::sleep(early);
         } else {
-            let lag = (real - virtual_time).as_secs_f64();
+            let late = real - virtual_time;
+            let lag = (self.slow + late).as_secs_f64();
+            if late > LAG {
+                *since += late;
+                self.slow += late;
+            }
             self.pace.lag_s = self.pace.lag_s.max(lag);
             if lag > 2.0 * self.told_s {
                 self.told_s = lag;
@@ -244,5 +256,25 @@ mod tests {
             live.look(&mut wire, 0);
         }
         assert_eq!(wire.down, [(0, b'!')]);
+    }
+
+    /// A computer that is busy for some time leaves a board that is not too fast for its client afterwards.
+    #[test]
+    fn lag_is_not_made_up_for() {
+        let bridge = Bridge::bind(0).unwrap();
+        let mut live = Served::new(bridge.listener, Arc::default());
+        let mut wire = Wire::default();
+        let mut look = |ms: u64| live.look(&mut wire, ms * 1_000_000);
+        let stall = Duration::from_millis(300);
+        look(100);
+        std::thread::sleep(stall);
+        look(101);
+        let begin = Instant::now();
+        for ms in 102..=200 {
+            look(ms);
+        }
+        // A slower computer takes longer.
+        assert!(begin.elapsed() >= Duration::from_millis(99) - LAG);
+        assert!(live.pace.lag_s >= 0.299, "{}", live.pace.lag_s);
     }
 }
