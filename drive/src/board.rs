@@ -17,6 +17,7 @@ use crate::port::Port;
 use crate::questions::{AGAIN, Questions};
 use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refusal, silent};
 use crate::sent::ATTEMPTS;
+use crate::starts::Starts;
 use crate::watch::{is_disarmed, is_enabled};
 
 /// A connected board. After [`Board::disarm_at_the_end`] a drop disarms the board.
@@ -25,6 +26,9 @@ pub(crate) struct Board {
     parser: Parser,
     messages: VecDeque<Message>,
     asked: Questions,
+    starts: Starts,
+    /// Number of starts at the first change, which a later start loses.
+    changed: Option<u32>,
     /// Longest wait for an answer, and longest silence.
     patience: Duration,
     /// Whether the end has to disarm.
@@ -53,6 +57,8 @@ impl Board {
             parser: Parser::default(),
             messages: VecDeque::new(),
             asked: Questions::new(patience),
+            starts: Starts::default(),
+            changed: None,
             patience,
             disarms: false,
             listener: None,
@@ -120,8 +126,10 @@ impl Board {
     pub(crate) fn next(&mut self, until: Instant) -> Result<Option<Message>, Failure> {
         loop {
             if let Some(message) = self.messages.pop_front() {
-                if let Message::Hello(_) = message {
-                    self.asked.answer();
+                match &message {
+                    Message::Hello(_) => self.asked.answer(),
+                    Message::Frame(frame) => self.starts.frame(frame),
+                    _ => {}
                 }
                 return Ok(Some(message));
             }
@@ -216,6 +224,7 @@ impl Board {
             Command::Tune { scene, .. } => SceneKind::ALL.get(usize::from(scene)).copied(),
             _ => None,
         };
+        self.changed.get_or_insert(self.starts.number);
         let mut before = self.identify()?.rejected;
         for _ in 0..ATTEMPTS {
             self.send(command)?;
@@ -229,7 +238,7 @@ impl Board {
                     explained(reason, scene)
                 )));
             }
-            if has_started_again(&earlier, &now) {
+            if has_started_again(&earlier, &now) || self.has_lost_a_change() {
                 return Err(Failure::Check(format!(
                     "{what}: the board has started again; find the cause of the reset, then run the command again"
                 )));
@@ -243,6 +252,11 @@ impl Board {
             "{what}: sent {ATTEMPTS} times, and not certain: each time bytes that are no command reached the \
              board; {NOISE}"
         )))
+    }
+
+    /// Whether the board has started again since the first change, which it has lost then.
+    pub(crate) fn has_lost_a_change(&self) -> bool {
+        self.changed.is_some_and(|at| at != self.starts.number)
     }
 
     /// The first frame that is as wanted.

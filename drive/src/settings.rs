@@ -151,6 +151,12 @@ pub(crate) fn store(board: &mut Board) -> Result<(), Failure> {
         _ => None,
     })?;
     let reason = match outcome {
+        // The flash has what it had.
+        Some(_) if board.has_lost_a_change() => {
+            "the board has started again, and has lost what was changed; find the cause of the reset, then run the \
+             command again"
+                .to_owned()
+        }
         Some((_, Some(Saved::Stored))) => {
             board.note(outcome_words(Saved::Stored));
             return Ok(());

@@ -2,7 +2,8 @@
 
 use std::process::Output;
 
-use drivers::{Command, Settings};
+use drivers::link::Rejected;
+use drivers::{Command, Setting, Settings};
 use haptic_control::{Mode, Request};
 
 use crate::scripted::{Board, Part, Script, error};
@@ -317,13 +318,43 @@ fn change_after_a_lost_answer_is_sent_again_if_it_may_be_damaged() {
 #[test]
 fn reset_of_the_board_is_no_refusal() {
     let board = Board::new(Script {
-        starts_again: Some(300),
+        starts_again: Some((ARM, 300)),
         ..Script::default()
     });
     let (output, _) = board.run(&["arm", "--seconds", "10"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let said = error(&output);
     assert!(said.starts_with("the board stopped: state boot"), "{said}");
+}
+
+/// No count of rejected commands tells the start.
+#[test]
+fn start_of_the_board_that_loses_a_setting_is_told_and_nothing_is_stored_for_it() {
+    let set = Command::Set {
+        setting: Setting::CurrentScale.number(),
+        value: 0.5,
+    };
+    for (from, said) in [
+        (
+            set,
+            ": the board has started again; find the cause of the reset",
+        ),
+        (
+            Command::Settings,
+            "not stored: the board has started again, and has lost what was changed",
+        ),
+    ] {
+        let board = Board::new(Script {
+            starts_again: Some((from, 0)),
+            rejected: Rejected::default(),
+            ..Script::default()
+        });
+        let arguments = ["settings", "current-scale=0.5", "serial=7", "--store"];
+        let (output, _) = board.run(&arguments);
+        assert_eq!(output.status.code(), Some(1), "{output:?}");
+        let error = error(&output);
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]

@@ -60,6 +60,10 @@ struct Player<'a> {
     asked: Option<u32>,
     /// Frame before which the board closes its end.
     last: Option<u32>,
+    /// Frame at which the first command came after which the firmware starts again.
+    starts_from: Option<u32>,
+    /// Whether it has.
+    has_started: bool,
     /// Frame at which the command `select` came.
     selected: Option<u32>,
     /// Frame at which the first command `disarm` came.
@@ -84,18 +88,14 @@ impl<'a> Player<'a> {
             script,
             state: script.begin,
             cause: Stop::None,
-            rejected: Rejected {
-                garbage: 7,
-                not_finite: 0,
-                out_of_bounds: 0,
-                unknown: 1,
-                unverified: 0,
-            },
+            rejected: script.rejected,
             settings: script.settings,
             // The board has run for some time.
             seq: 50,
             asked: None,
             last: None,
+            starts_from: None,
+            has_started: false,
             selected: None,
             disarmed: None,
             questions: 0,
@@ -123,6 +123,11 @@ impl<'a> Player<'a> {
             && command == from
         {
             self.last.get_or_insert(self.seq + frames);
+        }
+        if let Some((from, _)) = self.script.starts_again
+            && command == from
+        {
+            self.starts_from.get_or_insert(self.seq);
         }
         match command {
             Command::Identify => {
@@ -293,9 +298,13 @@ impl<'a> Player<'a> {
             self.bytes.extend(told);
         }
         self.seq += 1;
-        if number.is_some() && number == self.script.starts_again {
+        let starts_at = (self.starts_from.zip(self.script.starts_again))
+            .map(|(from, (_, frames))| from + frames);
+        if !self.has_started && starts_at.is_some_and(|at| self.seq >= at) {
+            self.has_started = true;
             (self.seq, self.asked) = (0, None);
             (self.state, self.rejected) = (Mode::Boot, Rejected::default());
+            self.settings = self.script.settings;
             // The answer to a question from before, ahead of the first frame.
             let told = [self.hello().into(), self.rejected.into()].map(|it| self.message(it));
             self.bytes.extend(told.concat());

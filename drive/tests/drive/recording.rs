@@ -180,7 +180,7 @@ fn runs_that_are_not_in_the_file_are_told_by_the_exit_status() {
     let out = folder("reset").join("run.csv");
     let path = out.to_str().unwrap();
     let starts = Script {
-        starts_again: Some(99),
+        starts_again: Some((Command::Identify, 99)),
         ..Script::default()
     };
     let (output, _) = Board::new(starts).run(&["record", "--out", path, "--seconds", "0.4"]);

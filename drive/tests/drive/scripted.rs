@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use drivers::link::{Features, Hello, Label, PROTOCOL};
+use drivers::link::{Features, Hello, Label, PROTOCOL, Rejected};
 use drivers::{Command, Settings};
 use haptic_control::{Mode, Stop};
 use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
@@ -45,8 +45,10 @@ pub(super) struct Script {
     pub(super) pause: Option<(u32, Duration)>,
     /// So many frames are sent from the first of this command on; then the board closes its end.
     pub(super) hang_up: Option<(Command, u32)>,
-    /// Frame, by its number from the first question on, after which the firmware starts again.
-    pub(super) starts_again: Option<u32>,
+    /// So many frames after the first of this command the firmware starts again.
+    pub(super) starts_again: Option<(Command, u32)>,
+    /// Commands that the board has rejected before the tool came.
+    pub(super) rejected: Rejected,
     /// Frames that are lost: first and last, by their number from the first question on.
     pub(super) lost: Option<(u32, u32)>,
     /// Whether each answer is sent at the next question only.
@@ -100,6 +102,11 @@ impl Default for Script {
             pause: None,
             hang_up: None,
             starts_again: None,
+            rejected: Rejected {
+                garbage: 7,
+                unknown: 1,
+                ..Rejected::default()
+            },
             lost: None,
             answers_late: false,
             loses: None,
