@@ -66,7 +66,7 @@ pub(crate) fn armed(board: &mut Board, answer: &Answer, plan: Plan) -> Result<()
     plan.check()?;
     admits(board, plan.scene)?;
     interrupt::take();
-    arm(board, answer)?;
+    arm(board, answer, plan.scene)?;
     ended(board, answer, plan)
 }
 
@@ -94,7 +94,8 @@ pub(crate) fn observed(
 ) -> Result<(), Failure> {
     interrupt::take();
     if plan.keeps_alive {
-        let followed = arm(board, answer).and_then(|()| follow(board, answer, plan, sink));
+        let armed = arm(board, answer, plan.scene);
+        let followed = armed.and_then(|()| follow(board, answer, plan, sink));
         // After an error too: what the caller does next may take its time.
         let disarmed = board.disarm();
         followed.and(disarmed.map(drop))?;
@@ -107,16 +108,21 @@ pub(crate) fn observed(
     Ok(())
 }
 
-/// Arms the board, and waits until it is.
-fn arm(board: &mut Board, answer: &Answer) -> Result<(), Failure> {
+/// Arms the board for a scene, if there is one, and waits until it is. A scene that another program has begun would run
+/// on if the command for this one were lost: no frame tells which scene runs.
+fn arm(board: &mut Board, answer: &Answer, scene: Option<SceneKind>) -> Result<(), Failure> {
     board.disarm_at_the_end();
     // A board that starts with this connection is younger.
     let earliest = answer.hello.rate / 1000 * EARLIEST_MS;
     let refusal = |frame: &Frame| format!("not armed: it starts again and again, {}", state(frame));
     let is_due = |frame: &Frame| frame.tick >= earliest || interrupt::came();
-    board.wait(answer.hello.rate, is_due, refusal)?;
+    let frame = board.wait(answer.hello.rate, is_due, refusal)?;
     if interrupt::came() {
         return Ok(());
+    }
+    if scene.is_some() && Mode::from_code(frame.state) == Some(Mode::Running) {
+        board.disarm()?;
+        board.disarm_at_the_end();
     }
     board.send(Command::Request(Request::Arm))?;
     board.wait(

@@ -210,6 +210,28 @@ fn scene_that_does_not_start_is_told_and_disarmed() {
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, WALL, DISARM]);
 }
 
+/// The tool would take the frames of the scene that runs for those of its own.
+#[test]
+fn scene_of_another_program_ends_before_the_next_one_begins() {
+    let board = |starts_after| {
+        Board::new(Script {
+            begin: Mode::Running,
+            starts_after,
+            ..Script::default()
+        })
+    };
+    let select = ["select", "wall", "--seconds", "0.2"];
+    let (output, commands) = board(Some(0)).run(&select);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (mut others, _) = sorted(&commands);
+    others.dedup();
+    assert_eq!(others, [DISARM, ARM, WALL, DISARM]);
+    // The command is lost.
+    let (output, _) = board(None).run(&[&select[..], &BRIEFLY].concat());
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(error(&output).contains("the scene does not start: state armed, cause none"));
+}
+
 #[test]
 fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
     for (arguments, said) in [
