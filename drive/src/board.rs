@@ -20,11 +20,18 @@ use crate::sent::ATTEMPTS;
 use crate::starts::Starts;
 use crate::watch::{is_disarmed, is_enabled};
 
+/// Bytes of a read at most: fewer than a system keeps for a serial port, so that a read that has fewer has left none.
+const READ: usize = 1024;
+/// Bytes that come in a row from a board that is understood at most: more than a system keeps for a connection.
+const MOST_BEHIND: usize = 1 << 24;
+
 /// A connected board. After [`Board::disarm_at_the_end`] a drop disarms the board.
 pub(crate) struct Board {
     port: Port,
     parser: Parser,
     messages: VecDeque<Message>,
+    /// Bytes that were read since a read has left nothing that had come.
+    behind: usize,
     asked: Questions,
     starts: Starts,
     /// Number of starts at the first change, which a later start loses.
@@ -56,6 +63,7 @@ impl Board {
             port,
             parser: Parser::default(),
             messages: VecDeque::new(),
+            behind: 0,
             asked: Questions::new(patience),
             starts: Starts::default(),
             changed: None,
@@ -133,9 +141,13 @@ impl Board {
                 }
                 return Ok(Some(message));
             }
-            let mut bytes = [0; 4096];
+            let mut bytes = [0; READ];
             let read = self.port.read(&mut bytes);
             let count = read.map_err(|error| self.lost(&error))?;
+            self.behind = match count < READ {
+                true => 0,
+                false => self.behind.saturating_add(count),
+            };
             for byte in &bytes[..count] {
                 let messages = &mut self.messages;
                 self.parser
@@ -159,10 +171,11 @@ impl Board {
     ) -> Result<Option<T>, Failure> {
         let mut again = Instant::now();
         let end = again + self.patience;
-        while Instant::now() < end {
-            if Instant::now() >= again {
+        while !self.is_over(end) {
+            let now = Instant::now();
+            if now >= again && now < end {
                 self.send(command)?;
-                again = Instant::now() + AGAIN;
+                again = now + AGAIN;
             }
             let message = self.next(end.min(again))?;
             if let Some(answer) = message.and_then(&mut answer) {
@@ -170,6 +183,13 @@ impl Board {
             }
         }
         Ok(None)
+    }
+
+    /// Whether a wait until `end` is over. After a standstill of this process what has come by then counts, unless the
+    /// other end sends faster than it is read.
+    fn is_over(&self, end: Instant) -> bool {
+        let has_read = self.behind == 0 && self.messages.is_empty();
+        Instant::now() >= end && (has_read || self.behind > MOST_BEHIND)
     }
 
     /// The identity of the board. Commands that were sent before have been processed by then.
@@ -273,7 +293,8 @@ impl Board {
         let mut limit = Limit::new(self.patience, rate_hz, heard);
         loop {
             let end = heard + self.patience;
-            if let Some(Message::Frame(frame)) = self.next(end)? {
+            let message = self.next(end)?;
+            if let Some(Message::Frame(frame)) = message {
                 if wanted(&frame) {
                     return Ok(frame);
                 }
@@ -281,7 +302,7 @@ impl Board {
                 if limit.is_over(heard, frame.tick) {
                     return Err(Failure::Check(failed(&frame)));
                 }
-            } else if Instant::now() >= end {
+            } else if self.is_over(end) {
                 return Err(self.silent());
             }
         }
@@ -341,6 +362,62 @@ impl Drop for Board {
             // A lost connection cannot be told again.
             let _ = self.send(Command::Request(Request::Disarm));
             self.port.finish();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::thread::sleep;
+
+    use drivers::link::LONGEST;
+
+    use super::*;
+    use crate::port::PipeEnd;
+    use crate::watch::tests::FRAME;
+
+    /// A board of little patience, and its end of the line, which has sent these messages, each for itself.
+    fn sent(messages: &[Message]) -> (Board, PipeEnd) {
+        let (port, end) = Port::pipe("board");
+        for message in messages {
+            let mut buffer = [0; LONGEST];
+            let bytes = message.encode(&mut buffer).unwrap().to_vec();
+            end.to.send(bytes).unwrap();
+        }
+        (Board::new(port, Duration::from_millis(50)), end)
+    }
+
+    #[test]
+    fn answer_that_comes_while_the_process_stands_still_is_taken() {
+        let messages = [FRAME.into(), FRAME.into(), Hello::default().into()];
+        let (mut board, _end) = sent(&messages);
+        let answer = board.ask(Command::Identify, |message| match message {
+            Message::Hello(hello) => Some(hello),
+            _ => {
+                sleep(Duration::from_millis(200));
+                None
+            }
+        });
+        assert_eq!(answer.unwrap(), Some(Hello::default()));
+    }
+
+    #[test]
+    fn frame_that_comes_while_the_process_stands_still_ends_a_wait() {
+        let (mut board, _end) = sent(&[Rejected::default().into(), FRAME.into()]);
+        // The end of the wait has passed at its begin.
+        board.patience = Duration::ZERO;
+        let frame = board.wait(10_000, |_| true, |_| String::new());
+        assert_eq!(frame.unwrap(), FRAME);
+    }
+
+    #[test]
+    fn wait_ends_where_nothing_comes_or_no_end() {
+        let (mut board, _end) = sent(&[]);
+        assert!(board.wait(10_000, |_| true, |_| String::new()).is_err());
+        let now = Instant::now();
+        for (behind, ends) in [(0, true), (READ, false), (MOST_BEHIND + READ, true)] {
+            board.behind = behind;
+            assert_eq!(board.is_over(now), ends);
         }
     }
 }

@@ -134,6 +134,12 @@ impl Port {
                         Err(RecvTimeoutError::Disconnected) => {}
                     }
                 }
+                // As much as there is: a reader takes fewer bytes for the end of what has come.
+                while rest.len() < buffer.len()
+                    && let Ok(bytes) = from.try_recv()
+                {
+                    rest.extend(bytes);
+                }
                 rest.read(buffer)
             }
         };
