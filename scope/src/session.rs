@@ -17,6 +17,9 @@ use crate::order::Order;
 pub(crate) const LONGEST_MESSAGE: usize = 1024;
 /// Messages that a page may send in a second. A page that drags the handle sends about 80.
 const MOST_A_SECOND: u32 = 300;
+/// Shortest interval of the messages that say that the page lives, in a flood too. A page sends one every 100 ms, and the
+/// board ends a scene after half a second without one.
+const ALIVE: Duration = Duration::from_millis(50);
 /// Messages that are no orders after which a page is disconnected.
 const MOST_GARBAGE: u32 = 100;
 /// Longest time in which a page takes an event.
@@ -32,8 +35,43 @@ struct Page {
     /// Whether the page was told that it commands.
     told: bool,
     garbage: u32,
+    rate: Rate,
+}
+
+/// The rate of the messages of a page.
+struct Rate {
     /// Begin of a second, and messages since.
     second: (Instant, u32),
+    /// When the latest message came that says that the page lives, and was admitted.
+    alive: Option<Instant>,
+}
+
+impl Rate {
+    const fn new(now: Instant) -> Self {
+        Self {
+            second: (now, 0),
+            alive: None,
+        }
+    }
+
+    /// Whether a message is followed that has this order, if it has one. A flood must not keep anybody from disarming the
+    /// board, and ends no scene by a silence.
+    fn admits(&mut self, order: Option<&Order>, now: Instant) -> bool {
+        if now.saturating_duration_since(self.second.0) >= Duration::from_secs(1) {
+            self.second = (now, 0);
+        }
+        self.second.1 += 1;
+        let is_due = (self.alive).is_none_or(|at| now.saturating_duration_since(at) >= ALIVE);
+        let is_admitted = match order {
+            Some(Order::Disarm) => true,
+            Some(Order::Alive) if is_due => true,
+            _ => self.second.1 <= MOST_A_SECOND,
+        };
+        if is_admitted && order == Some(&Order::Alive) {
+            self.alive = Some(now);
+        }
+        is_admitted
+    }
 }
 
 /// Serves a page until it goes.
@@ -47,7 +85,7 @@ pub(crate) async fn session(socket: WebSocket, hub: Arc<Hub>) {
         is_known: false,
         told: false,
         garbage: 0,
-        second: (Instant::now(), 0),
+        rate: Rate::new(Instant::now()),
         hub: Arc::clone(&hub),
     };
     let mut facts = hub.facts.clone();
@@ -102,13 +140,8 @@ impl Page {
             Message::Ping(_) | Message::Pong(_) => return ControlFlow::Continue(()),
             Message::Binary(_) => return self.garbage(),
         };
-        if self.second.0.elapsed() >= Duration::from_secs(1) {
-            self.second = (Instant::now(), 0);
-        }
-        self.second.1 += 1;
         let order = Order::parse(&text);
-        // A flood must not keep anybody from disarming the board.
-        if self.second.1 > MOST_A_SECOND && order != Ok(Order::Disarm) {
+        if !self.rate.admits(order.as_ref().ok(), Instant::now()) {
             self.hub.counts.flooded.fetch_add(1, Ordering::Relaxed);
             return ControlFlow::Continue(());
         }
@@ -163,5 +196,39 @@ impl Page {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A flood of two seconds: without its keep-alives a board would end its scene.
+    #[test]
+    fn flood_keeps_neither_disarm_nor_keep_alives_back() {
+        let begin = Instant::now();
+        let mut rate = Rate::new(begin);
+        let (mut hands, mut alive) = (0, Vec::new());
+        for ms in 0..2000 {
+            let now = begin + Duration::from_millis(ms);
+            let mut admits = |order: &Order| rate.admits(Some(order), now);
+            hands += u32::from(admits(&Order::Hand { at: None }));
+            if admits(&Order::Alive) && alive.last().is_none_or(|last| ms - last >= 50) {
+                alive.push(ms);
+            }
+            assert!(admits(&Order::Disarm));
+        }
+        assert!(hands <= 2 * MOST_A_SECOND);
+        assert!(
+            alive.windows(2).all(|pair| pair[1] - pair[0] <= 100),
+            "{alive:?}"
+        );
+        assert!(alive.last().is_some_and(|last| *last > 1900));
+        // A flood of keep-alives is one too.
+        let late = begin + Duration::from_secs(9);
+        let admitted = (0..2000)
+            .filter(|_| rate.admits(Some(&Order::Alive), late))
+            .count();
+        assert_eq!(admitted, MOST_A_SECOND as usize);
     }
 }

@@ -73,8 +73,12 @@ fn other_hosts_origins_and_tokens_are_refused() {
 fn one_page_commands_and_the_other_watches_until_the_first_has_gone() {
     let server = Server::emulated();
     let mut first = running(&server);
-    let mut second = server.joined();
+    let mut second = server.client();
+    // The connection may have taken longer than the silence after which another page may command.
+    first.order(&json!({"do": "alive"}));
+    second.order(&json!({"do": "join", "token": server.token}));
     assert_eq!(second.role()["commands"], false);
+    first.live();
     second.order(&json!({"do": "disarm"}));
     assert!(
         second.role()["why"]
@@ -114,6 +118,7 @@ fn garbage_floods_and_slow_readers_do_not_affect_the_board() {
     // A page that sends garbage until it is thrown out.
     let mut vandal = server.joined();
     for k in 0..2000 {
+        page.live();
         let text = ["{", "\u{0}", "[[[[", "{\"tune\":{\"scene\":2}}"][k % 4];
         if vandal
             .socket
@@ -123,7 +128,7 @@ fn garbage_floods_and_slow_readers_do_not_affect_the_board() {
             break;
         }
     }
-    vandal.wait_for_the_end();
+    vandal.wait_for_the_end(&mut page);
     let counts = page.status("garbage is counted", |status| {
         status["counts"]["garbage"].as_u64() > Some(100)
     });
@@ -133,9 +138,10 @@ fn garbage_floods_and_slow_readers_do_not_affect_the_board() {
     let _ = long
         .socket
         .send(tungstenite::Message::text("x".repeat(100_000)));
-    long.wait_for_the_end();
+    long.wait_for_the_end(&mut page);
     // The page that commands floods: what is too much is not followed, and counted.
     for k in 0..5000 {
+        page.live();
         page.order(&json!({"do": "hand", "at": 1e-4 * f64::from(k % 7)}));
     }
     let status = page.status("floods are counted", |status| {
