@@ -138,18 +138,20 @@ fn sliders_have_the_values_of_the_board() {
         return;
     };
     run_scene(&mut browser, &tab, "wall");
-    let enter = |browser: &mut Browser, value: &str| {
-        browser.value(&tab, &format!(
-            "(() => {{ const i = $('parameter-stiffness'); i.value = '{value}'; i.oninput(); }})()"
-        ))
-    };
     let shown = |value: &str| {
         format!(
             "Math.abs($('parameter-stiffness').value - {value}) < 1e-6 && $('parameter-stiffness').previousSibling.textContent === '{value} N·m/rad'"
         )
     };
+    // Whether the value is shown at once.
+    let enter = |browser: &mut Browser, value: &str| {
+        let shown = shown(value);
+        browser.value(&tab, &format!(
+            "(() => {{ const i = $('parameter-stiffness'); i.value = '{value}'; i.oninput(); return {shown}; }})()"
+        ))
+    };
     browser.wait(&tab, &shown("0.300"));
-    enter(&mut browser, "0.125");
+    assert_eq!(enter(&mut browser, "0.125"), true);
     browser.wait(&tab, "scope.status.tuned['2.1'] === 0.125");
     browser.tell(&tab, "Page.reload", &json!({}));
     browser.wait(
@@ -161,8 +163,7 @@ fn sliders_have_the_values_of_the_board() {
     browser.wait(&tab, &shown("0.125"));
     // A value that does not come to the board leaves the slider again.
     browser.value(&tab, "scope.link.send = () => {}, 0");
-    enter(&mut browser, "0.25");
-    browser.wait(&tab, &shown("0.250"));
+    assert_eq!(enter(&mut browser, "0.250"), true);
     browser.wait(&tab, &shown("0.125"));
     assert_eq!(browser.complaints, [""; 0]);
 }
