@@ -9,11 +9,8 @@ use estimator_catalogue::ROWS;
 use haptic_control::{DualStage, Fingerprint, Motor};
 
 use crate::device::Device;
-use crate::presets::{PlantKind, Preset, Presets, check_value};
+use crate::presets::{PlantKind, Preset, Presets, check_value, is_near};
 use crate::read::{Step, at_line};
-
-/// Largest ratio of counts per revolution to which tuned values are scaled without a warning.
-const FAR: f64 = 1.5;
 
 /// The constants of a build.
 #[derive(Clone, Debug)]
@@ -132,10 +129,7 @@ fn far_presets(presets: &Presets, counts_per_rev: u32) -> Option<String> {
         .preset
         .iter()
         .filter_map(|preset| preset.counts_per_rev);
-    let far = |tuned: &u32| {
-        let ratio = f64::from(*tuned) / f64::from(counts_per_rev);
-        !(1.0 / FAR..=FAR).contains(&ratio)
-    };
+    let far = |tuned: &u32| !is_near(f64::from(*tuned), f64::from(counts_per_rev));
     let counts: BTreeSet<_> = tuned.collect();
     if !counts.is_empty() && counts.iter().all(far) {
         let counts: Vec<_> = counts.iter().map(u32::to_string).collect();

@@ -46,6 +46,17 @@ const MOTORS: [&str; 2] = ["large", "handle"];
 /// Rates of recordings, and control rates of a preset, Hz: `tune` runs on recordings too.
 pub const RATES_HZ: RangeInclusive<f64> = 10.0..=10e6;
 
+/// Largest ratio of rates, or of counts per revolution, to which tuned values are scaled without a
+/// warning.
+const FAR: f64 = 1.5;
+
+/// Whether values that were tuned for a rate, or for counts per revolution, are scaled to the `used`
+/// one without a warning: neither is more than 1.5 times the other.
+#[must_use]
+pub fn is_near(tuned: f64, used: f64) -> bool {
+    (1.0 / FAR..=FAR).contains(&(tuned / used))
+}
+
 /// Values by estimator and parameter.
 pub type Estimators = BTreeMap<String, BTreeMap<String, f64>>;
 
@@ -318,6 +329,19 @@ mod tests {
         assert_eq!(rate("low-pass", 1e5, PlantKind::Friction), Some(2000.0));
         assert_eq!(rate("low-pass", 1e5, PlantKind::Frictionless), None);
         assert_eq!(rate("foaw-end-fit", 1e3, PlantKind::Friction), None);
+    }
+
+    #[test]
+    fn values_are_scaled_without_a_warning_up_to_one_and_a_half() {
+        for (tuned, used, near) in [
+            (1000.0, 1500.0, true),
+            (1500.0, 1000.0, true),
+            (1000.0, 1501.0, false),
+            (1501.0, 1000.0, false),
+            (4096.0, 90.0, false),
+        ] {
+            assert_eq!(is_near(tuned, used), near, "{tuned} {used}");
+        }
     }
 
     /// A window of 40 intervals at 1 kHz has 400 at 10 kHz, and 128 at most.

@@ -4,11 +4,8 @@ use std::collections::BTreeMap;
 
 use super::{Override, Parameters, PlantKind, Preset, Presets};
 use crate::estimators::{Kind, Search, Setup};
+use device_files::presets::is_near;
 use simulation::simulate::RATES_HZ;
-
-/// Largest ratio of rates, or of counts per revolution, at which tuned values are scaled without a
-/// note.
-const FAR: f64 = 1.5;
 
 impl Parameters {
     /// Sources of the values in order of falling priority, for messages.
@@ -30,15 +27,10 @@ impl Parameters {
             let Some((source, preset)) = self.tuned(kind, setup, plant) else {
                 continue;
             };
-            let counts = preset
-                .counts_per_rev
-                .unwrap_or(setup.stages.large.counts_per_rev);
-            let near = |a: f64, b: f64| (1.0 / FAR..=FAR).contains(&(a / b));
-            let near = near(preset.rate_hz, setup.rate.0)
-                && near(
-                    f64::from(counts),
-                    f64::from(setup.stages.large.counts_per_rev),
-                );
+            let here = setup.stages.large.counts_per_rev;
+            let counts = preset.counts_per_rev.unwrap_or(here);
+            let near = is_near(preset.rate_hz, setup.rate.0)
+                && is_near(f64::from(counts), f64::from(here));
             if !near {
                 let tuned = format!("{source} for {counts} counts/rev at {} Hz", preset.rate_hz);
                 far.entry(tuned).or_default().push(kind.name);
