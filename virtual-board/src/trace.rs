@@ -1,7 +1,7 @@
 //! The record of a run for another processor core: what the core asked of its surroundings, and what
 //! they did to it.
 //!
-//! A trace begins with [`MAGIC`] and the [`hash`] of the image's file, 8 bytes. Records follow in the
+//! A trace begins with [`MAGIC`] and the hash of the image's file (64-bit FNV-1a), 8 bytes. Records follow in the
 //! order of their events. A record is 20 bytes, little endian: kind (1 byte), width of an access in
 //! bytes (1), number of an exception (2), address (4), value or length (4), and the number of
 //! instructions that the core has retired (8), which includes the instruction that makes an access.
@@ -18,6 +18,7 @@ use rigless::emulator::{
     Access, AccessKind, Error, Hit, HitKind, Host, InterruptLine, Memory, Settled, Watch,
 };
 use rigless::soc::{Endian, Width};
+use terminal::checksum;
 
 use crate::flash;
 use crate::image::Image;
@@ -51,13 +52,6 @@ pub enum Kind {
     End = 8,
 }
 
-/// FNV-1a, 64 bits.
-#[must_use]
-pub fn hash(bytes: &[u8]) -> u64 {
-    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
-    bytes.iter().fold(0xCBF2_9CE4_8422_2325, step)
-}
-
 /// The trace of a run in the making.
 #[derive(Debug)]
 pub(crate) struct Trace {
@@ -75,7 +69,7 @@ pub(crate) struct Trace {
 impl Trace {
     pub(crate) fn new(image: &Image) -> Self {
         let mut bytes = MAGIC.to_vec();
-        bytes.extend(hash(image.elf()).to_le_bytes());
+        bytes.extend(checksum::sum(image.elf()).to_le_bytes());
         Self {
             bytes,
             handlers: image.handlers(),
@@ -245,14 +239,6 @@ impl Host for Recorder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Test vectors of the specification of FNV.
-    #[test]
-    fn hash_is_fnv_1a() {
-        assert_eq!(hash(b""), 0xCBF2_9CE4_8422_2325);
-        assert_eq!(hash(b"a"), 0xAF63_DC4C_8601_EC8C);
-        assert_eq!(hash(b"foobar"), 0x8594_4171_F739_67E8);
-    }
 
     fn empty() -> Trace {
         Trace {

@@ -29,6 +29,7 @@ pub use track::Track;
 use crate::device::Device;
 use rand_xoshiro::{Xoshiro256PlusPlus, rand_core::SeedableRng};
 use std::{fmt, str::FromStr};
+use terminal::checksum::Sum;
 
 /// Purpose of a scenario. It decides where the scenario is used by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -304,12 +305,11 @@ impl ScenarioName {
 
     /// Seed of all random numbers of this scenario, from the seed of the run.
     pub fn mix(self, seed: u64) -> u64 {
-        // FNV-1a of the name, so that two scenarios with one seed draw independent numbers.
-        let hash = |state: u64, byte: u8| (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        seed.to_le_bytes()
-            .into_iter()
-            .chain(self.as_str().bytes())
-            .fold(0xcbf2_9ce4_8422_2325, hash)
+        // With the name, so that two scenarios with one seed draw independent numbers.
+        let mut inputs = Sum::default();
+        inputs.add(&seed.to_le_bytes());
+        inputs.add(self.as_str().as_bytes());
+        inputs.0
     }
 }
 

@@ -1,8 +1,8 @@
-//! Checksum of a file (64-bit FNV-1a), to detect changes.
+//! Hash of bytes (64-bit FNV-1a): to detect changes of a file or a run, and to derive seeds.
 
 use std::io::{self, Write};
 
-/// Checksum of `bytes`.
+/// FNV-1a of `bytes`, 64 bits.
 #[must_use]
 pub fn sum(bytes: &[u8]) -> u64 {
     let mut sum = Sum::default();
@@ -10,7 +10,7 @@ pub fn sum(bytes: &[u8]) -> u64 {
     sum.0
 }
 
-/// The checksum of the bytes that were written to it.
+/// FNV-1a of the bytes that were added or written to it.
 pub struct Sum(pub u64);
 
 impl Default for Sum {
@@ -20,7 +20,8 @@ impl Default for Sum {
 }
 
 impl Sum {
-    fn add(&mut self, bytes: &[u8]) {
+    /// Appends `bytes` to what is hashed.
+    pub fn add(&mut self, bytes: &[u8]) {
         self.0 = bytes.iter().fold(self.0, |sum, &byte| {
             (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });

@@ -14,6 +14,7 @@ use simulation::simulate::simulate;
 use simulation::trace::{Columns, Trace};
 use stress::course::Course;
 use stress::tested::{TestedEstimator, at};
+use terminal::checksum::Sum;
 
 const RATES_HZ: [f64; 2] = [1000.0, 10_000.0];
 
@@ -29,24 +30,23 @@ const SEED: u64 = 7;
 
 const HEADER: &str = "estimator,rate_hz,trace,ticks,input_hash,velocity_hash";
 
-/// FNV-1a, 64 bits.
-struct Hash(u64);
+/// A hash of 32-bit words, each little endian.
+#[derive(Default)]
+struct Hash(Sum);
 
 impl Hash {
-    const fn new() -> Self {
-        Self(0xCBF2_9CE4_8422_2325)
+    fn take(&mut self, word: u32) {
+        self.0.add(&word.to_le_bytes());
     }
 
-    fn take(&mut self, word: u32) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3);
-        }
+    const fn value(&self) -> u64 {
+        self.0.0
     }
 }
 
 /// A hash of everything that an estimator may read of the trace.
 fn input_hash(trace: &Trace) -> u64 {
-    let mut hash = Hash::new();
+    let mut hash = Hash::default();
     for k in 0..trace.len() {
         hash.take(trace.counts_large[k]);
         if let Some(counts) = &trace.counts_small {
@@ -60,7 +60,7 @@ fn input_hash(trace: &Trace) -> u64 {
             hash.take((edge.age_s as f32).to_bits());
         }
     }
-    hash.0
+    hash.value()
 }
 
 /// A row for each estimator of the command line over each scenario.
@@ -77,7 +77,7 @@ fn scenarios(rate_hz: f64, rows: &mut String) {
         for kind in Kind::all() {
             let setup = Setup::of(&device, rate_hz);
             let values = parameters.values(kind, &setup, PlantKind::Friction);
-            let mut hash = Hash::new();
+            let mut hash = Hash::default();
             for velocity in kind.build(&setup, &values).unwrap().run(&trace) {
                 hash.take(velocity.to_bits());
             }
@@ -85,7 +85,7 @@ fn scenarios(rate_hz: f64, rows: &mut String) {
             writeln!(
                 rows,
                 "{name},{rate_hz},{trace},{ticks},{input:016x},{:016x}",
-                hash.0
+                hash.value()
             )
             .unwrap();
         }
@@ -97,7 +97,7 @@ fn course(tested: &TestedEstimator) -> String {
     let mut course = Course::new(SEED, tested.rate_hz);
     let mut pair = tested.pair();
     pair.start(&course.shown());
-    let (mut input, mut velocities) = (Hash::new(), Hash::new());
+    let (mut input, mut velocities) = (Hash::default(), Hash::default());
     for tick in 0..COURSE_TICKS {
         if tick % STRETCH_TICKS == 0 {
             course.move_on();
@@ -115,8 +115,8 @@ fn course(tested: &TestedEstimator) -> String {
         "{},{},course,{COURSE_TICKS},{:016x},{:016x}\n",
         tested.name.replace(',', ""),
         tested.rate_hz,
-        input.0,
-        velocities.0
+        input.value(),
+        velocities.value()
     )
 }
 

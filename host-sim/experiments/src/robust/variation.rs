@@ -15,6 +15,7 @@ use super::corners::corners;
 use crate::closed_loop::Hand;
 use simulation::device::Device;
 use simulation::scenario::{draw, draw_sign};
+use terminal::checksum::Sum;
 
 /// Factors of the nominal values, and effects that the controller does not model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -117,16 +118,12 @@ impl Subject {
     }
 
     fn random(self, seed: u64, scene: SceneKind) -> Xoshiro256PlusPlus {
-        // FNV-1a hash of all inputs of the draw.
-        let hash = |state: u64, byte: u8| (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        let state = seed
-            .to_le_bytes()
-            .into_iter()
-            .chain(scene.name().bytes())
-            .chain([0])
-            .chain(self.to_string().bytes())
-            .fold(0xcbf2_9ce4_8422_2325, hash);
-        Xoshiro256PlusPlus::seed_from_u64(state)
+        let mut inputs = Sum::default();
+        inputs.add(&seed.to_le_bytes());
+        inputs.add(scene.name().as_bytes());
+        inputs.add(&[0]);
+        inputs.add(self.to_string().as_bytes());
+        Xoshiro256PlusPlus::seed_from_u64(inputs.0)
     }
 }
 
