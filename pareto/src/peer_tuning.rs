@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use bench_image::Measured;
 use bench_image::peers::{IdspLowPass, IdspPll};
 use catalogue::estimators::sample;
+use device_files::to_digits;
 use estimator_core::{Hertz, Signals};
 use experiments::compare::interval;
 use experiments::tune::{FIRST_SEED, RMS_WEIGHT};
@@ -83,8 +84,7 @@ fn best<E: Measured>(
         best = least.map_or(low, |(_, share)| share);
         (low, high) = (best / step, best * step);
     }
-    let hertz = best * rate.0;
-    format!("{hertz:.2e}").parse().unwrap_or(hertz)
+    to_digits(best * rate.0, 3)
 }
 
 /// One line per rate with the parameters for `bench-image/src/estimators.rs`.

@@ -19,10 +19,17 @@ pub fn decimal(x: f64) -> String {
     format!("{x:e}")
 }
 
+/// `value` with `digits` significant digits, at least one.
+#[must_use]
+pub fn to_digits(value: f64, digits: usize) -> f64 {
+    let text = format!("{value:.0$e}", digits.saturating_sub(1));
+    text.parse().unwrap_or(value)
+}
+
 /// `value` with six significant digits, for a number that is not measured.
 #[must_use]
-pub fn digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+pub fn six_digits(value: f64) -> f64 {
+    to_digits(value, 6)
 }
 
 #[cfg(test)]
@@ -35,7 +42,24 @@ mod tests {
 
     #[test]
     fn residue_of_a_computation_is_not_shown() {
-        let shown = [5.99889999999868, 2.0 / 11_600.0, 2000.0, f64::INFINITY].map(super::digits);
+        let values = [5.99889999999868, 2.0 / 11_600.0, 2000.0, f64::INFINITY];
+        let shown = values.map(super::six_digits);
         assert_eq!(shown, [5.9989, 0.000172414, 2000.0, f64::INFINITY]);
+        // 12.345678900000001
+        assert_eq!(super::six_digits(1e3 * 0.012_345_678_9), 12.3457);
+    }
+
+    #[test]
+    fn digits_are_significant_ones() {
+        for (value, digits, rounded) in [
+            (123.456, 3, 123.0),
+            (-0.001_264, 2, -0.0013),
+            (9.96, 2, 10.0),
+            (9.96, 0, 10.0),
+            (0.0, 3, 0.0),
+        ] {
+            assert_eq!(super::to_digits(value, digits), rounded, "{value} {digits}");
+        }
+        assert!(super::to_digits(f64::NAN, 3).is_nan());
     }
 }

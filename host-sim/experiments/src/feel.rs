@@ -16,11 +16,11 @@ pub use without::Without;
 
 use crate::closed_loop::{Conditions, Dac, Exact, FeedbackEncoder, Loop, estimator, usual};
 use crate::parallel::in_order;
-use crate::table::digits;
 use crate::transparency::attribution::CAUSES;
 use crate::transparency::{Attribution, Fingertip, Ledger, Parasitic};
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
+use device_files::six_digits;
 use simulation::device::Device;
 use simulation::simulate;
 use terminal::failure::Failure;
@@ -51,7 +51,7 @@ impl Settings {
             let mut device = without.of(&self.device);
             // A tenth as it is written.
             let inertia = &mut device.stages.small.inertia;
-            *inertia = digits(*inertia);
+            *inertia = six_digits(*inertia);
             let reason = device.validate().err()?;
             Some((without.name(), reason))
         };

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
+use device_files::six_digits;
 use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Row};
 use scoring::score::SKIP_S;
@@ -291,9 +292,7 @@ fn ranked(kind: &'static Kind, outcomes: &[Outcome], settings: &Settings) -> Opt
         .parameters
         .clone();
     // Six digits: steps of a clock that are rounded in the log do not give a rate of 999.9999.
-    let rate_hz = format!("{:.5e}", first.recording.trace.rate_hz)
-        .parse()
-        .ok()?;
+    let rate_hz = six_digits(first.recording.trace.rate_hz);
     let setup = Setup::of(settings.device, rate_hz);
     let values = settings
         .parameters

@@ -1,5 +1,6 @@
 //! The paper's tables: constants of the device, and velocity and force of one count.
 
+use device_files::six_digits;
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 
@@ -26,20 +27,20 @@ pub(super) fn constants(name: &str, device: &Device) -> Markup {
             html! { "coupler damping b" },
             format!(
                 "{} mN\u{b7}m\u{b7}s/rad",
-                round(1e3 * device.stages.damping)
+                six_digits(1e3 * device.stages.damping)
             ),
         ),
         (
             html! { "handle diameter D" },
-            format!("{} mm", round(1e3 * device.handle.diameter_m)),
+            format!("{} mm", six_digits(1e3 * device.handle.diameter_m)),
         ),
         (
             html! { "force threshold of a fingertip, " (threshold) },
-            format!("{} mN", round(1e3 * device.interval.threshold_n)),
+            format!("{} mN", six_digits(1e3 * device.interval.threshold_n)),
         ),
         (
             html! { "Weber fraction k" },
-            format!("{}\u{a0}%", round(100.0 * device.interval.weber)),
+            format!("{}\u{a0}%", six_digits(100.0 * device.interval.weber)),
         ),
         (
             html! { "encoder of the large motor" },
@@ -98,11 +99,6 @@ pub(super) fn count_worth(device: &Device) -> Markup {
             }
         }
     }
-}
-
-/// Without the noise of a decimal factor: 0.96, not 0.9600000000000001.
-fn round(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]

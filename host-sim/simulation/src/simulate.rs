@@ -5,7 +5,7 @@ use crate::encoder::{DiscErrors, EdgeObserver, Encoder};
 use crate::plant::{Plant, Pose, steps_per_tick};
 use crate::scenario::{Drive, EncoderCounts, Scenario, ScenarioName, build, draw};
 use crate::trace::{Columns, EDGE_CLOCK_HZ, EdgeStamp, Trace};
-use device_files::{decimal, digits};
+use device_files::{decimal, six_digits};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
@@ -37,8 +37,8 @@ pub fn ticks(rate_hz: f64, seconds: f64) -> Result<usize, String> {
         return Err(format!(
             "duration {} s: must be from {} to {} s at {rate_hz} Hz",
             decimal(seconds),
-            digits(2.0 / rate_hz),
-            digits(MOST_TICKS / rate_hz)
+            six_digits(2.0 / rate_hz),
+            six_digits(MOST_TICKS / rate_hz)
         ));
     }
     Ok(ticks as usize)

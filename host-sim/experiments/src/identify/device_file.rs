@@ -1,5 +1,6 @@
 //! The device file with the identified values.
 
+use device_files::six_digits;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::quantity::{Known, Quantity};
@@ -52,8 +53,7 @@ pub fn updated(
 
 /// A value with six digits.
 fn rounded(value: f64) -> Value {
-    let digits = format!("{value:.5e}");
-    Value::from(digits.parse().unwrap_or(value))
+    Value::from(six_digits(value))
 }
 
 /// Sets `section.name`. Its section can be a table, an inline table, or missing.

@@ -206,9 +206,13 @@ impl Quantity {
     pub(super) fn half_text(&self) -> String {
         let Estimate { value, half, .. } = self.estimate;
         if half < 0.1 * value.abs() {
-            return format!("+-{} %", digits(100.0 * half / value.abs()));
+            return format!("+-{} %", two_digits(100.0 * half / value.abs()));
         }
-        format!("+-{} {}", digits(self.unit.per_si * half), self.unit.name)
+        format!(
+            "+-{} {}",
+            two_digits(self.unit.per_si * half),
+            self.unit.name
+        )
     }
 
     /// Key and half-width, for a message of one line.
@@ -283,7 +287,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
 }
 
 /// Two significant digits.
-fn digits(x: f64) -> String {
+fn two_digits(x: f64) -> String {
     let places = (1.0 - x.abs().log10().floor()).clamp(0.0, 9.0);
     format!("{x:.0$}", places as usize)
 }

@@ -1,5 +1,6 @@
 //! Row of one run, for CSV and JSON.
 
+use device_files::six_digits;
 use haptic_control::Stop;
 use serde::{Deserialize, Serialize};
 
@@ -60,25 +61,25 @@ impl RobustRow {
             reason,
             stop: cause.map(|cause| cause.as_str().to_owned()),
             stop_s: judge.stopped.map(|tick| tick as f64 / settings.rate_hz),
-            handle_rad_s: digits(judge.before.handle_rad_s),
-            large_rad_s: digits(judge.before.large_rad_s),
-            felt_nm: digits(judge.before.felt_nm),
-            felt_n: digits(judge.before.felt_nm / radius),
-            parasitic_n: digits(judge.before.parasitic_nm / radius),
-            oscillation_nm: judge.oscillation_nm().map(digits),
-            after_handle_rad_s: stopped.then(|| digits(judge.after.handle_rad_s)),
-            after_felt_nm: stopped.then(|| digits(judge.after.felt_nm)),
+            handle_rad_s: finite(judge.before.handle_rad_s),
+            large_rad_s: finite(judge.before.large_rad_s),
+            felt_nm: finite(judge.before.felt_nm),
+            felt_n: finite(judge.before.felt_nm / radius),
+            parasitic_n: finite(judge.before.parasitic_nm / radius),
+            oscillation_nm: judge.oscillation_nm().map(finite),
+            after_handle_rad_s: stopped.then(|| finite(judge.after.handle_rad_s)),
+            after_felt_nm: stopped.then(|| finite(judge.after.felt_nm)),
             variation,
         }
     }
 }
 
-/// `value` with six significant digits; the largest f64 if it is not finite.
-fn digits(value: f64) -> f64 {
+/// `value` with six significant digits; the largest f64 if it is not finite, which JSON does not have.
+fn finite(value: f64) -> f64 {
     if !value.is_finite() {
         return f64::MAX;
     }
-    format!("{value:.5e}").parse().unwrap_or(value)
+    six_digits(value)
 }
 
 #[cfg(test)]
@@ -96,8 +97,8 @@ mod tests {
             reason: Some(Reason::SpeedAfterStop),
             stop: Some("jump".into()),
             stop_s: Some(0.1),
-            handle_rad_s: digits(1.0 / 3.0),
-            large_rad_s: digits(f64::NAN),
+            handle_rad_s: finite(1.0 / 3.0),
+            large_rad_s: finite(f64::NAN),
             felt_nm: 0.0,
             felt_n: 0.0,
             parasitic_n: 1e-9,

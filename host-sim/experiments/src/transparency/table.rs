@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use super::{Outcome, Parasitic};
 use crate::table::layout::{Column, table};
-use crate::table::{columns, digits, number};
+use crate::table::{columns, number};
+use device_files::six_digits;
 use scoring::score::{Field, Score};
 
 /// Velocity score that is shown by default.
@@ -21,7 +22,7 @@ pub fn details(outcomes: &[Outcome], asked: &[&Field<Score>], width: usize) -> S
         let _ = writeln!(
             text,
             "{scene} at {rate_hz} Hz, plant {plant}, loop closed; unnoticed: below {} mN",
-            digits(outcome.fingertip.threshold_mn)
+            six_digits(outcome.fingertip.threshold_mn)
         );
         let loops = outcome.runs.iter().map(|run| run.controlled_by.to_owned());
         let forces = || outcome.runs.iter().map(|run| &run.parasitic);

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use device_files::digits;
+use device_files::six_digits;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shards::Experiment;
@@ -261,7 +261,7 @@ fn track(
     if seconds < FEWEST_BLOCKS * BLOCK_S {
         return refused(format!(
             "{} s are too short; tuning needs {} s, of which every second one is held out",
-            digits(seconds),
+            six_digits(seconds),
             FEWEST_BLOCKS * BLOCK_S
         ));
     }

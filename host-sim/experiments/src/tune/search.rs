@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use catalogue::estimators::{Kind, Parameter, Search, Setup, Values};
+use device_files::to_digits;
 
 /// Points of a search's first grid.
 const GRID: usize = 25;
@@ -43,7 +44,7 @@ pub(super) fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec
         .filter_map(|(parameter, &value)| {
             let grid = first_grid(parameter, setup);
             let (low, high) = (grid[0], grid[grid.len() - 1]);
-            let is = |end: f64| three_digits(end) == three_digits(value);
+            let is = |end: f64| to_digits(end, 3) == to_digits(value, 3);
             let at = match parameter.search {
                 Search::Fixed(_) => return None,
                 _ if is(low) => "lower",
@@ -158,7 +159,7 @@ fn finer(parameter: &Parameter, axis: &[f64], best: f64) -> Vec<f64> {
             // More than three digits of a tuned value are not significant.
             logarithmic(low, high, 9)
                 .into_iter()
-                .map(three_digits)
+                .map(|value| to_digits(value, 3))
                 .collect()
         }
         Search::Each(..) if high - low <= 8.0 => {
@@ -186,10 +187,6 @@ fn whole(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,7 +197,6 @@ mod tests {
         let grid = logarithmic(1.0, 100.0, 5);
         assert!((grid[2] - 10.0).abs() < 1e-9 && (grid[4] - 100.0).abs() < 1e-9);
         assert_eq!(whole(vec![1.2, 0.9, 3.0]), [1.0, 3.0]);
-        assert_eq!(three_digits(123.456), 123.0);
         let window = Kind::named("foaw-end-fit").unwrap().parameters[0];
         assert_eq!(
             finer(&window, &[1.0, 5.0, 9.0], 5.0),

@@ -37,7 +37,7 @@ pub fn table(cases: &[LoopSetup], boundaries: &[Boundary], width: usize) -> Stri
             numbers("K at B = 0", "N.m/rad", &|of| shown(plain(of), 1.0)),
             fails("", &plain),
             numbers("best K", "N.m/rad", &|of| shown(best(of).1, 1.0)),
-            numbers("at B", "mN.m.s/rad", &|of| digits(1e3 * best(of).0)),
+            numbers("at B", "mN.m.s/rad", &|of| three_digits(1e3 * best(of).0)),
             numbers("B at K = 0", "mN.m.s/rad", &|of| shown(of.viscous, 1e3)),
             fails("", &|of| of.viscous),
         ];
@@ -56,11 +56,11 @@ fn beyond(bound: Bound) -> String {
 /// A bound times `unit`, with `>=` if it is a lower one.
 fn shown(bound: Bound, unit: f64) -> String {
     let cap = if bound.beyond.is_none() { ">= " } else { "" };
-    format!("{cap}{}", digits(unit * bound.value))
+    format!("{cap}{}", three_digits(unit * bound.value))
 }
 
 /// About three significant digits.
-fn digits(value: f64) -> String {
+fn three_digits(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
         _ if value < 0.1 => format!("{value:.4}"),

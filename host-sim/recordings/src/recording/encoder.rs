@@ -4,6 +4,7 @@ pub(super) mod absolute;
 pub(super) mod grid;
 pub(super) mod held;
 
+use device_files::to_digits;
 use estimator_core::Count;
 use terminal::failure::Failure;
 
@@ -12,7 +13,6 @@ use super::numbers::shown;
 use super::options::units::Scale;
 use super::options::{Column, ReadOptions};
 use super::text::row::Row;
-use super::times::steps::to_digits;
 use grid::Grid;
 use held::Held;
 

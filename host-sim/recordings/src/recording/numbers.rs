@@ -1,6 +1,6 @@
 //! Numbers in messages.
 
-use super::times::steps::to_digits;
+use device_files::to_digits;
 
 /// Digits of a number that a message shows: the time since 1970 in microseconds has 16.
 const DIGITS: usize = 15;

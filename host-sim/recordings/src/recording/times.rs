@@ -8,11 +8,12 @@ pub(super) mod own_times;
 pub(super) mod resample;
 pub(super) mod steps;
 
+use device_files::to_digits;
 use terminal::failure::Failure;
 
 use super::numbers::shown;
 use super::text::row::Row;
-use steps::{SLOWEST_HZ, to_digits};
+use steps::SLOWEST_HZ;
 
 /// Largest difference of the mean rate of the rows from that of --row-rate, relative.
 const SAME_RATE: f64 = 0.05;

@@ -1,5 +1,6 @@
 //! Tuning of peers on the recordings with which constants may be chosen.
 
+use device_files::to_digits;
 use rayon::prelude::*;
 use scoring::score::Wanted;
 use terminal::failure::Failure;
@@ -115,7 +116,7 @@ fn smallest(ranges: &[[f64; 2]], cost: impl Fn(&[f64]) -> f64) -> Vec<f64> {
                 let k = at % points;
                 at /= points;
                 let value = range[0] * step(*range).powi(k as i32);
-                format!("{value:.2e}").parse().unwrap_or(value)
+                to_digits(value, 3)
             };
             let values: Vec<f64> = ranges.iter().map(value).collect();
             let cost = cost(&values);

@@ -1,7 +1,7 @@
 //! A varied device that is no device: what is left of its deviations.
 
 use super::{NOMINAL, Variation};
-use crate::table::digits;
+use device_files::six_digits;
 use simulation::device::Device;
 
 /// A number of a [`Variation`].
@@ -75,8 +75,13 @@ impl Variation {
     pub fn changes(mut self, mut limited: Self) -> String {
         let changed = FIELDS.into_iter().filter_map(|(name, field)| {
             let (whole, left) = (*field(&mut self), *field(&mut limited));
-            (whole != left)
-                .then(|| format!("{name} {} in place of {}", digits(left), digits(whole)))
+            (whole != left).then(|| {
+                format!(
+                    "{name} {} in place of {}",
+                    six_digits(left),
+                    six_digits(whole)
+                )
+            })
         });
         changed.collect::<Vec<_>>().join(", ")
     }
@@ -131,7 +136,7 @@ mod tests {
             corner("agile-stiff").changes(limited),
             format!(
                 "small_inertia {} in place of 0.7",
-                digits(limited.small_inertia)
+                six_digits(limited.small_inertia)
             )
         );
     }

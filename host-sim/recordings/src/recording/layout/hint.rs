@@ -1,5 +1,7 @@
 //! Options that would read a log without a needed column.
 
+use device_files::to_digits;
+
 use super::endings::Ending;
 use super::formats::{Ambiguous, Format};
 use super::header::short;
@@ -7,7 +9,6 @@ use super::search::number;
 use super::{Keyed, Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
 use crate::recording::options::Column;
 use crate::recording::options::units::Quantity;
-use crate::recording::times::steps::to_digits;
 
 /// Characters of the longest name that a hint repeats; a longer one is called by its number.
 const LONGEST: usize = 80;

@@ -1,9 +1,10 @@
 //! Rows whose times come in bursts: a computer has stamped the rows of a packet as they arrived.
 
+use device_files::to_digits;
 use terminal::failure::Failure;
 
 use super::mean_rate;
-use super::steps::{Steps, differs, to_digits};
+use super::steps::{Steps, differs};
 use crate::recording::numbers::shown;
 
 /// Least length of a pause between two bursts, in mean steps. Rows that come at random have a quarter of their time

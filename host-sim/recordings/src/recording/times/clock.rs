@@ -1,6 +1,8 @@
 //! Rate of a recording's rows, its uneven steps, and gaps in which rows are missing.
 
-use super::steps::{EVEN, Steps, differs, to_digits};
+use device_files::to_digits;
+
+use super::steps::{EVEN, Steps, differs};
 use crate::recording::Recording;
 use crate::recording::numbers::shown;
 use terminal::failure::Failure;

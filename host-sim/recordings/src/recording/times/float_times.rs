@@ -1,7 +1,9 @@
 //! Times that were numbers of 32 bits, which are far apart after a long time.
 
+use device_files::to_digits;
+
 use super::mean_rate;
-use super::steps::{EVEN, to_digits};
+use super::steps::EVEN;
 use crate::recording::numbers::shown;
 
 /// Largest distance of a time from a number of 32 bits, in distances of these: what the digits of a log round.

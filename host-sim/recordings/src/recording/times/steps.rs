@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use device_files::presets::RATES_HZ;
+use device_files::to_digits;
 use terminal::failure::Failure;
 
 use crate::recording::numbers::shown;
@@ -225,9 +226,4 @@ impl Steps {
 /// Difference of a step from a period, over the period.
 pub(crate) fn differs(step: f64, period: f64) -> f64 {
     (step - period).abs() / period
-}
-
-/// `x` with `digits` significant digits.
-pub(crate) fn to_digits(x: f64, digits: usize) -> f64 {
-    format!("{x:.0$e}", digits - 1).parse().unwrap_or(x)
 }
