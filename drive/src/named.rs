@@ -184,18 +184,29 @@ impl Tuning {
         }
     }
 
-    /// Checks the value against the bounds of an image for the device of this tool. An image for
-    /// another device has other bounds, and checks them itself.
+    /// Checks the value against the bounds of an image. Those of an image for another device than that of
+    /// this tool are not known: the image checks them itself.
     ///
     /// # Errors
     /// [`Failure::Input`] with the bounds.
     pub fn check(&self, hello: &Hello) -> Result<(), Failure> {
+        self.within(hello.device == DEVICE_FINGERPRINT.0)
+    }
+
+    /// Checks the value against the bounds of an image for the device of this tool, before the identity of
+    /// the board has come.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the bounds.
+    pub fn check_own(&self) -> Result<(), Failure> {
+        self.within(true)
+    }
+
+    /// Checks the value: whether it is whole, and if the bounds of the image are known, against them.
+    fn within(&self, are_known: bool) -> Result<(), Failure> {
         let quantity = self.parameter.quantity;
         let range = quantity.range(&BOUNDS);
-        let inside = match hello.device == DEVICE_FINGERPRINT.0 {
-            true => range.contains(&self.value),
-            false => self.value.is_finite(),
-        };
+        let inside = !are_known || range.contains(&self.value);
         let is_whole = quantity == Quantity::DetentsPerTurn;
         if inside && !(is_whole && self.value.fract() != 0.0) {
             return Ok(());

@@ -1,14 +1,12 @@
 //! What a page asks for, in the form of its messages.
 
-use drive::named::{chosen, numbered};
+use drive::named::{Tuning, chosen, numbered};
 use drive::settings::admitted;
 use drivers::link::Hello;
 use drivers::{Command, Setting};
 use firmware_app::large;
-use firmware_app::scene::BOUNDS;
 use haptic_control::{Request, SceneKind};
 use serde::Deserialize;
-use tuned::DEVICE_FINGERPRINT;
 use virtual_board::fault::Fault;
 
 use crate::bench::guided;
@@ -87,19 +85,7 @@ impl Order {
                 scene: number,
                 parameter,
                 value,
-            } => {
-                let scene = scene(*number)?;
-                let known = scene.facts().parameters.get(usize::from(*parameter));
-                let known =
-                    known.ok_or_else(|| format!("scene {scene} has no parameter {parameter}"))?;
-                match value.is_finite() {
-                    true => Ok(()),
-                    false => Err(format!(
-                        "{scene} {} {value}: out of bounds; give a number",
-                        known.name
-                    )),
-                }
-            }
+            } => tuning(*number, *parameter, *value).map(|_| ()),
             Self::Estimator { number } if usize::from(*number) >= large::NAMES.len() => Err(
                 format!("estimator {number}: give 0 to {}", large::NAMES.len() - 1),
             ),
@@ -128,19 +114,24 @@ impl Order {
     /// # Errors
     /// One line with what the image has.
     pub(crate) fn fits(&self, hello: Option<&Hello>) -> Result<(), String> {
-        let is_other = hello.is_some_and(|hello| hello.device != DEVICE_FINGERPRINT.0);
-        let hello = || hello.ok_or("the board has not told its identity yet");
+        let identity = || hello.ok_or("the board has not told its identity yet");
         match *self {
-            // An image for another device has other bounds, and checks them itself.
             Self::Tune {
                 scene,
                 parameter,
                 value,
-            } if !is_other => within(scene, parameter, value),
-            Self::Estimator { number } => chosen(number, hello()?),
+            } => {
+                let tuning = tuning(scene, parameter, value)?;
+                let checked = match hello {
+                    Some(hello) => tuning.check(hello),
+                    None => tuning.check_own(),
+                };
+                checked.map_err(|failure| failure.to_string())
+            }
+            Self::Estimator { number } => chosen(number, identity()?),
             // The board stores every number.
             Self::Set { setting, value } if setting == Setting::Estimator.number() => {
-                numbered(value as u8, hello()?)
+                numbered(value as u8, identity()?)
                     .map_err(|error| format!("estimator={value}: {error}"))
             }
             _ => Ok(()),
@@ -186,21 +177,15 @@ impl Order {
     }
 }
 
-/// Checks a value of a parameter against the bounds of an image for the device of this build.
-fn within(number: u8, parameter: u8, value: f32) -> Result<(), String> {
+/// The value for a parameter of a scene, by their numbers.
+///
+/// # Errors
+/// One line on an unknown number, or a value that is not finite.
+pub(crate) fn tuning(number: u8, parameter: u8, value: f32) -> Result<Tuning, String> {
     let scene = scene(number)?;
-    let Some(known) = scene.facts().parameters.get(usize::from(parameter)) else {
-        return Ok(());
-    };
-    let range = known.quantity.range(&BOUNDS);
-    if range.contains(&value) {
-        return Ok(());
-    }
-    let (least, most) = (range.start(), range.end());
-    let (name, unit) = (known.name, known.quantity.unit());
-    Err(format!(
-        "{scene} {name} {value}: out of bounds; give {least} to {most} {unit}"
-    ))
+    let known = scene.facts().parameters.get(usize::from(parameter));
+    let known = known.ok_or_else(|| format!("scene {scene} has no parameter {parameter}"))?;
+    Tuning::new(scene, known.name, value).map_err(|failure| failure.to_string())
 }
 
 fn scene(number: u8) -> Result<SceneKind, String> {
@@ -212,6 +197,7 @@ fn scene(number: u8) -> Result<SceneKind, String> {
 pub(crate) mod tests {
     use drivers::link::{Features, Label, PROTOCOL};
     use firmware_app::config::DEVICE;
+    use firmware_app::scene::BOUNDS;
 
     use super::*;
 
@@ -294,9 +280,26 @@ pub(crate) mod tests {
         for value in [f32::NAN, f32::INFINITY] {
             for hello in [own, other] {
                 let refused = checked(value, &hello).unwrap_err();
-                assert!(refused.contains("out of bounds"), "{refused}");
+                assert!(refused.contains("not finite; give a number"), "{refused}");
             }
         }
+        // A part of a detent, on any device.
+        let detents = Order::Tune {
+            scene: SceneKind::Detents.number(),
+            parameter: 1,
+            value: 24.5,
+        };
+        let said = "detents per-turn 24.5: out of bounds; give a whole number from 1 to 1000";
+        for hello in [None, Some(&own), Some(&other)] {
+            assert_eq!(detents.fits(hello), Err(said.to_owned()));
+        }
+        let unknown = Order::Tune {
+            scene: SceneKind::Wall.number(),
+            parameter: 9,
+            value: 0.0,
+        };
+        let said = "scene wall has no parameter 9";
+        assert_eq!(unknown.check(), Err(said.to_owned()));
         assert!(Order::Hand { at: Some(f64::NAN) }.check().is_err());
         assert!(Order::Scene { number: 200 }.check().is_err());
         assert!(Order::Estimator { number: 2 }.check().is_err());

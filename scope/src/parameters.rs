@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use drive::named::{Known, Tuning};
+use drive::named::Known;
 use drivers::link::Hello;
 use haptic_control::SceneKind;
 use serde_json::Value;
+
+use crate::order::tuning;
 
 /// The values since the start of the board.
 pub(crate) struct Tuned {
@@ -25,12 +27,8 @@ impl Tuned {
 
     /// A value goes to the board. One that its image refuses changes nothing.
     pub(crate) fn set(&mut self, scene: u8, parameter: u8, value: f32, hello: &Hello) {
-        let Some(kind) = SceneKind::ALL.get(usize::from(scene)).copied() else {
-            return;
-        };
-        let facts = kind.facts().parameters.get(usize::from(parameter));
-        let tuning = facts.and_then(|facts| Tuning::new(kind, facts.name, value).ok());
-        if tuning.is_some_and(|tuning| self.known.set(&tuning, hello).is_ok()) {
+        let tuning = tuning(scene, parameter, value);
+        if tuning.is_ok_and(|tuning| self.known.set(&tuning, hello).is_ok()) {
             self.values.insert((scene, parameter), value);
         }
     }
