@@ -14,6 +14,7 @@ mod line;
 mod list;
 mod page;
 mod plot;
+mod rates;
 mod real;
 mod recommend;
 mod record;

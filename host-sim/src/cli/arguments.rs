@@ -7,13 +7,11 @@ use clap::{Arg, Args, CommandFactory as _, Parser, Subcommand};
 use super::compare::longer_than_skipped;
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::designed::{Place, designed};
 use experiments::distinct;
 use recordings::arguments::DeviceFile;
 use recordings::log::{Log, is_stdin};
 use simulation::scenario::ScenarioName;
-use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 use terminal::output::note;
 use terminal::wording::WIDTH;
@@ -230,11 +228,6 @@ pub(super) fn scenarios(
         }
     }
     Ok(scenarios)
-}
-
-/// Help text of a `--rate` of closed loops, with the range.
-pub(super) fn loop_rate_help() -> String {
-    format!("Control rate, {LOWEST_RATE_HZ} to {} Hz", RATES_HZ.1)
 }
 
 /// Opens these recordings. `name` is that of the argument. A recording that is there twice is refused: it says

@@ -24,6 +24,7 @@ use terminal::output::{Folder, note};
 use super::arguments::{distinct, kinds};
 use super::compare::{Compare, longer_than_skipped, report_folder, timing, wanted};
 use super::page::{self, progress};
+use super::rates::PAPER_HZ;
 
 /// Default duration of a run, s.
 const SECONDS: f64 = 10.0;
@@ -207,7 +208,7 @@ pub(super) fn cases(
     };
     let seconds = options.seconds.unwrap_or(seconds);
     let mut cases = Vec::new();
-    for rate_hz in distinct(&options.rates, &[1e3, 11.6e3]) {
+    for rate_hz in distinct(&options.rates, &PAPER_HZ) {
         loop_ticks(rate_hz, seconds)?;
         longer_than_skipped(seconds)?;
         cases.extend(scenes.iter().map(|&scene| LoopCase {

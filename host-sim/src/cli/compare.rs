@@ -19,13 +19,14 @@ use scoring::evaluation::Row;
 use scoring::score::{Field, SKIP_S, Score, Wanted};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
-use simulation::simulate::{self, RATES_HZ};
+use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
 use super::arguments::{ParameterOptions, distinct, kinds_at, scenarios};
 use super::closed_loop;
 use super::page::{self, progress};
+use super::rates::{PAPER_HZ, repeatable};
 use super::report_extras::{ReportExtras, report_extras};
 
 /// Default folder of the report.
@@ -51,10 +52,10 @@ fn scenario_help() -> String {
 
 /// Help text of `--rate`.
 fn rate_help() -> String {
-    let (lowest, highest) = RATES_HZ;
     format!(
-        "Control rate, {lowest} to {highest} Hz, with --closed-loop from {LOWEST_RATE_HZ} Hz on; repeatable \
-         [default: 1000 and 11600]"
+        "{}, with --closed-loop from {LOWEST_RATE_HZ} Hz on{}",
+        super::rates::rate_help(),
+        repeatable(&PAPER_HZ)
     )
 }
 
@@ -249,7 +250,7 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
     };
     let mut cases = Vec::new();
     for &plant in plants {
-        for rate_hz in distinct(&options.rates, &[1e3, 11.6e3]) {
+        for rate_hz in distinct(&options.rates, &PAPER_HZ) {
             for &scenario in &scenarios {
                 let seconds = options.seconds.unwrap_or(scenario.default_seconds());
                 simulate::ticks(rate_hz, seconds)?;

@@ -17,10 +17,11 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, distinct, loop_rate_help};
+use super::arguments::{ParameterOptions, distinct};
 use super::closed_loop;
 use super::compare::longer_than_skipped;
 use super::page::{self, progress};
+use super::rates::{USUAL_HZ, loop_rate_help, repeatable};
 
 /// Default folder of the page.
 pub(super) const PAGE: &str = "target/feel";
@@ -38,7 +39,7 @@ fn scene_help() -> String {
 pub(super) struct Feel {
     #[arg(long = "scene", visible_alias = "scenario", value_name = "NAME", help = scene_help())]
     pub(super) scenes: Vec<String>,
-    #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + "; repeatable [default: 1000]")]
+    #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + &repeatable(&USUAL_HZ))]
     pub(super) rates: Vec<f64>,
     /// Estimator of the large motor's velocity, see host-sim estimators; repeatable [default: all
     /// without edge time stamps]
@@ -90,7 +91,7 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     longer_than_skipped(options.seconds)?;
     let scenes = closed_loop::scenes(&options.scenes, handle)?;
     let cases = cases(
-        &distinct(&options.rates, &[1e3]),
+        &distinct(&options.rates, &USUAL_HZ),
         &scenes,
         &estimators,
         options.seconds,

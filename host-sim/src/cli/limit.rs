@@ -17,6 +17,7 @@ use terminal::output::note;
 use super::arguments::{ParameterOptions, distinct, scenarios};
 use super::compare::{longer_than_skipped, settings};
 use super::page::{self, progress};
+use super::rates::{USUAL_HZ, rate_help, repeatable};
 
 #[derive(Debug, Args)]
 pub(super) struct Limit {
@@ -24,8 +25,7 @@ pub(super) struct Limit {
     /// free-air, texture]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ")]
+    #[arg(long = "rate", value_name = "HZ", help = rate_help() + &repeatable(&USUAL_HZ))]
     pub(super) rates: Vec<f64>,
     /// Estimator to compare with the particle filter, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -51,7 +51,7 @@ pub(super) struct Limit {
 pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
     let mut cases = Vec::new();
-    for rate_hz in distinct(&options.rates, &[1e3]) {
+    for rate_hz in distinct(&options.rates, &USUAL_HZ) {
         simulation::simulate::ticks(rate_hz, options.seconds)?;
         longer_than_skipped(options.seconds)?;
         cases.extend(scenarios.iter().map(|&scenario| Case {

@@ -11,6 +11,7 @@ use terminal::failure::Failure;
 
 use super::arguments::distinct;
 use super::compare::{Compare, case_report};
+use super::rates::USUAL_HZ;
 
 /// Number of particles for the lower bound. With the 2000 particles of `host-sim limit` the bound
 /// is 0.2 to 1.0 % lower (scenario stochastic, 1 kHz, seeds 1 and 2).
@@ -31,7 +32,7 @@ pub(super) fn report_extras(
     settings: &Settings,
     cases: &[Case],
 ) -> Result<ReportExtras, Failure> {
-    let rate_hz = distinct(&options.rates, &[1e3])
+    let rate_hz = distinct(&options.rates, &USUAL_HZ)
         .into_iter()
         .fold(f64::INFINITY, f64::min);
     let of = |scenario: ScenarioName| Case {

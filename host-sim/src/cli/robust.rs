@@ -17,8 +17,9 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, loop_rate_help};
+use super::arguments::ParameterOptions;
 use super::page;
+use super::rates::loop_rate_help;
 use super::shard::{self, Asked, Outputs};
 
 /// Default folder of the report.

@@ -17,6 +17,7 @@ use terminal::output::Folder;
 
 use super::arguments::{ParameterOptions, check_rates, distinct, kinds_at, scenarios};
 use super::page;
+use super::rates::{USUAL_HZ, rate_help, repeatable};
 use super::shard::{Asked, Outputs};
 
 /// Default folder of the page.
@@ -31,8 +32,7 @@ pub(super) struct Sensitivity {
     /// heating]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ")]
+    #[arg(long = "rate", value_name = "HZ", help = rate_help() + &repeatable(&USUAL_HZ))]
     pub(super) rates: Vec<f64>,
     /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -104,7 +104,7 @@ fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
     let device = options.device.load_to_simulate()?;
     let parameters = options.parameters.load()?;
-    let rates_hz = distinct(&options.rates, &[1e3]);
+    let rates_hz = distinct(&options.rates, &USUAL_HZ);
     check_rates(&rates_hz, options.seconds)?;
     let places = rates_hz.iter().map(|&hz| with_friction(&device, hz));
     let places: Vec<_> = places.collect();

@@ -11,8 +11,8 @@ use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
-use super::arguments::loop_rate_help;
 use super::page::working;
+use super::rates::loop_rate_help;
 
 /// Load on the handle in a scene.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -15,6 +15,7 @@ use terminal::failure::Failure;
 use terminal::output::{check_place, is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{check_rates, distinct, kinds, open_logs, scenarios};
+use super::rates::{TUNED_HZ, rate_help, repeatable};
 use super::shard::{self, Outputs};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::short_name;
@@ -48,8 +49,7 @@ pub(super) struct Tune {
     /// observers: all with friction except heating]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
-    #[arg(long = "rate", value_name = "HZ")]
+    #[arg(long = "rate", value_name = "HZ", help = rate_help() + &repeatable(&TUNED_HZ))]
     pub(super) rates: Vec<f64>,
     /// Estimator to tune, see host-sim estimators; repeatable [default: all that have parameters]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -86,7 +86,7 @@ impl Tune {
             seconds: self.seconds,
             perturbed: self.perturbed.then_some(true),
         };
-        let rates_hz = distinct(&self.rates, &[1e3, 10e3, 11.6e3]);
+        let rates_hz = distinct(&self.rates, &TUNED_HZ);
         check_rates(&rates_hz, self.seconds)?;
         Ok(Plan {
             device: self.device.load_to_simulate()?,

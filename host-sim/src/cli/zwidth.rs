@@ -17,8 +17,9 @@ use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{ParameterOptions, distinct, kinds_at, loop_rate_help};
+use super::arguments::{ParameterOptions, distinct, kinds_at};
 use super::page;
+use super::rates::{TUNED_HZ, loop_rate_help, repeatable};
 use super::shard::{Asked, Outputs};
 
 /// Default folder of the page.
@@ -44,7 +45,7 @@ pub(super) struct Zwidth {
     /// Search also with the true velocities of both motors in the place of estimates
     #[arg(long)]
     pub(super) exact: bool,
-    #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + "; repeatable [default: 1000, 10000 and 11600]")]
+    #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + &repeatable(&TUNED_HZ))]
     pub(super) rates: Vec<f64>,
     /// Number of lines of the large encoder, 4 to 1000000; repeatable [default: 256, 1024 and 5000; with
     /// --device those of the device, a quarter of its counts per revolution]
@@ -129,7 +130,7 @@ fn own_lines(device: &Device, given: &[u32]) -> u32 {
 fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let device = options.device.load_to_simulate()?;
     let parameters = options.parameters.load()?;
-    let rates_hz = distinct(&options.rates, &[1e3, 10e3, 11.6e3]);
+    let rates_hz = distinct(&options.rates, &TUNED_HZ);
     for &rate_hz in &rates_hz {
         loop_ticks(rate_hz, 1.0)?;
     }

@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use measured::tables::{STRESS, STRESS_PARAMETERS, STRESS_SIGNALS};
 use shards::file::{self, Run};
 use shards::{Experiment as _, Part, Shards};
+use simulation::simulate::RATES_HZ as RANGE_HZ;
 use terminal::explain;
 use terminal::failure::{Failure, ended};
 use terminal::output::{Folder, check_place, is_stdout, print_bytes, write_whole};
@@ -44,8 +45,7 @@ struct Arguments {
     /// Ticks per estimator and rate, 1 to 1e15; 1e9 takes more than an hour on two free cores
     #[arg(long, value_name = "N", default_value = "1e9", value_parser = ticks)]
     ticks: u64,
-    /// Control rate, 100 to 100000 Hz; repeatable
-    #[arg(long = "rate", value_name = "HZ", default_values_t = RATES_HZ, value_parser = rate)]
+    #[arg(long = "rate", value_name = "HZ", default_values_t = RATES_HZ, value_parser = rate, help = rate_help())]
     rates: Vec<f64>,
     /// Run only estimators whose name begins with NAME [default: all]
     #[arg(long, value_name = "NAME")]
@@ -97,9 +97,15 @@ fn ticks(text: &str) -> Result<u64, String> {
 
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(rate) if (100.0..=100_000.0).contains(&rate) => Ok(rate),
-        _ => Err("must be 100 to 100000 Hz".to_owned()),
+        Ok(rate) if (RANGE_HZ.0..=RANGE_HZ.1).contains(&rate) => Ok(rate),
+        _ => Err(format!("must be {} to {} Hz", RANGE_HZ.0, RANGE_HZ.1)),
     }
+}
+
+/// Help text of `--rate`.
+fn rate_help() -> String {
+    let (lowest, highest) = RANGE_HZ;
+    format!("Control rate, {lowest} to {highest} Hz; repeatable")
 }
 
 fn main() -> ExitCode {
