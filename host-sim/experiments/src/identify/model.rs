@@ -100,7 +100,8 @@ fn step(omega: f64, drive: f64, damping: f64, friction: f64, period_s: f64) -> f
         false => net * period_s,
     };
     let end = decay * omega + gained;
-    if end * omega >= 0.0 {
+    // A velocity that overflows has no zero to pass.
+    if end.is_nan() || end * omega >= 0.0 {
         return end;
     }
     // The velocity passed zero; the rest of the period starts from rest.
@@ -128,6 +129,8 @@ mod tests {
         // A reversal: 0.5 ms to stop at 5 a second, the rest at 1 a second.
         let turned = step(2.5e-3, -3.0, 0.0, 2.0, 1e-3);
         assert!((turned + 0.5e-3).abs() < 1e-9, "{turned}");
+        // A coefficient without a meaning: e^800 is no number.
+        assert!(step(1.0, -1e9, -8e5, 0.0, 1e-3).is_nan());
         // Reversals with damping, against a solution in a hundred thousand steps.
         for (omega, period_s) in [(20.0, 10e-3), (20.0, 5e-3), (2.0, 1e-3), (-20.0, 5e-3)] {
             let (drive, damping, friction) = (-4000.0_f64.copysign(omega), 83.5, 352.0);
