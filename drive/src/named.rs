@@ -172,6 +172,18 @@ impl Tuning {
         self.scene
     }
 
+    /// Number of the parameter in the scene.
+    #[must_use]
+    pub const fn number(&self) -> u8 {
+        self.number
+    }
+
+    /// The value, in the SI unit of the parameter's quantity: finite.
+    #[must_use]
+    pub const fn value(&self) -> f32 {
+        self.value
+    }
+
     /// The command that sets the value.
     pub(crate) fn command(&self) -> Command {
         match self.scene {

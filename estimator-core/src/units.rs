@@ -100,7 +100,7 @@ pub struct CountsPerTickSquared(pub f32);
 pub struct Amps(f32);
 
 impl Amps {
-    /// The largest magnitude, far above what any haptic device carries.
+    /// The largest magnitude, A: far above what any haptic device carries.
     pub const MAX: f32 = 1000.0;
 
     /// No current.

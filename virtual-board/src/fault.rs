@@ -1,5 +1,7 @@
 //! Faults that a run can inject.
 
+use terminal::wording::unknown;
+
 macro_rules! faults {
     ($($(#[doc = $meaning:literal])+ $fault:ident $(($parameter:ty))?: $($(($value:literal))? $name:literal, $what:literal);+;)+) => {
         /// A fault that begins at a given time.
@@ -148,10 +150,7 @@ impl std::str::FromStr for Fault {
     fn from_str(name: &str) -> Result<Self, String> {
         Self::all()
             .find(|fault| fault.as_str() == name)
-            .ok_or_else(|| {
-                let known: Vec<_> = Self::all().map(Self::as_str).collect();
-                format!("no fault '{name}'; there are {}", known.join(", "))
-            })
+            .ok_or_else(|| unknown("fault", name, Self::all().map(Self::as_str)))
     }
 }
 
@@ -168,6 +167,7 @@ mod tests {
             assert_eq!(fault.as_str().parse(), Ok(fault));
         }
         let error = "stuck-c".parse::<Fault>().unwrap_err();
-        assert!(error.starts_with("no fault 'stuck-c'; there are stuck-a, "));
+        assert!(error.starts_with("no fault 'stuck-c'; did you mean stuck-"));
+        assert!(error.contains("? there are stuck-a, stuck-b, "), "{error}");
     }
 }

@@ -43,52 +43,48 @@ pub fn stiffness(scene: SceneKind, device: &DualStage) -> Option<f32> {
     usual.value(scene.parameter("stiffness")?, RATE)
 }
 
+/// Parses `stiffness=0.2` to the value for the parameter of a scene.
+fn parsed(scene: SceneKind, text: &str) -> Result<Tuning, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("must be NAME=VALUE@S, for example stiffness=0.2@1.5")?;
+    let value = value
+        .parse()
+        .map_err(|_| format!("'{value}' is not a number"))?;
+    Tuning::new(scene, name, value).map_err(|failure| failure.to_string())
+}
+
 /// Parses `stiffness=0.2` to the command that sets the parameter. `check` and the image check the bounds of
 /// the value.
 ///
 /// # Errors
-/// One line on another text, or on a name that is not a parameter of the scene.
+/// One line on another text, on a name that is not a parameter of the scene, or on a value that is not finite.
 pub fn tune(scene: SceneKind, text: &str) -> Result<Command, String> {
-    let (name, value) = text.split_once('=').ok_or_else(|| {
-        format!("--tune {text}: must be NAME=VALUE@S, for example stiffness=0.2@1.5")
-    })?;
-    let parameters: Vec<_> = (scene.facts().parameters.iter())
-        .map(|parameter| parameter.name)
-        .collect();
-    let parameter = scene.parameter(name).ok_or_else(|| match &*parameters {
-        [] => format!("--tune {text}: {scene} has no parameters"),
-        _ => format!("--tune {text}: {scene} has {}", parameters.join(", ")),
-    })?;
-    let value = value
-        .parse()
-        .map_err(|_| format!("--tune {text}: '{value}' is not a number"))?;
+    let tuning = parsed(scene, text).map_err(|error| format!("--tune {text}: {error}"))?;
+    let value = tuning.value();
     Ok(match scene {
         SceneKind::Torque => Command::Torque(value),
         _ => Command::Tune {
             scene: scene.number(),
-            parameter,
+            parameter: tuning.number(),
             value,
         },
     })
 }
 
-/// Checks that the image takes the value of a text that [`tune`] has parsed, after those that are `known`.
+/// Checks that the image takes the value of a text of [`tune`], after those that are `known`.
 ///
 /// # Errors
-/// One line with the bounds.
+/// One line with the bounds; as [`tune`].
 pub(crate) fn check(
     scene: SceneKind,
     text: &str,
     hello: &Hello,
     known: &mut Known,
 ) -> Result<(), String> {
-    let value = |(name, value): (_, &str)| Some((name, value.parse().ok()?));
-    let Some((name, value)) = text.split_once('=').and_then(value) else {
-        return Ok(());
-    };
-    Tuning::new(scene, name, value)
-        .and_then(|tuning| known.set(&tuning, hello))
-        .map_err(|failure| format!("--tune {text}: {failure}"))
+    let set = |tuning| known.set(&tuning, hello).map_err(|it| it.to_string());
+    let set = parsed(scene, text).and_then(set);
+    set.map_err(|error| format!("--tune {text}: {error}"))
 }
 
 #[cfg(test)]
@@ -108,13 +104,17 @@ mod tests {
         assert_eq!(torque, Ok(Command::Torque(-0.01)));
         for (text, said) in [
             ("stiffness", "must be NAME=VALUE@S"),
-            ("softness=1", "wall has position, stiffness, damping"),
+            (
+                "softness=1",
+                "no parameter of wall 'softness'; did you mean stiffness? there are position, stiffness, damping",
+            ),
             ("stiffness=soft", "'soft' is not a number"),
+            ("stiffness=inf", "not finite; give a number"),
         ] {
             assert!(tune(wall, text).unwrap_err().contains(said), "{text}");
         }
         let off = tune(SceneKind::Off, "torque=1").unwrap_err();
-        assert!(off.ends_with("off has no parameters"), "{off}");
+        assert!(off.ends_with("scene off has no parameter"), "{off}");
     }
 
     #[test]
