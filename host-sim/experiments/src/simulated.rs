@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use haptic_control::{Excite, LoopPoles, SceneKind};
 
 use crate::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, loop_ticks, named, usual};
+use crate::transparency::compare::DEFAULT_ESTIMATOR;
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use recordings::recording::Recording;
@@ -85,7 +86,7 @@ impl Run {
         let ticks = loop_ticks(self.rate_hz, self.seconds.unwrap_or(EXCITE_S))?;
         let parameters = Parameters::default();
         let estimator = |counts_per_rev| {
-            let kind = Kind::named("kalman-triple-steady")?;
+            let kind = Kind::named(DEFAULT_ESTIMATOR)?;
             estimator(kind, &device, counts_per_rev, self.rate_hz, &parameters)
         };
         let assumed = device.stages;

@@ -9,6 +9,7 @@ use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::designed::{Place, designed};
 use experiments::distinct;
+use experiments::transparency::compare::DEFAULT_ESTIMATOR;
 use recordings::arguments::DeviceFile;
 use recordings::log::{Log, is_stdin};
 use simulation::scenario::ScenarioName;
@@ -228,6 +229,24 @@ pub(super) fn scenarios(
         }
     }
     Ok(scenarios)
+}
+
+/// Help text of a `--handle-estimator`, with the default.
+pub(super) fn handle_help() -> String {
+    format!("Estimator of the handle's velocity [default: {DEFAULT_ESTIMATOR}]")
+}
+
+/// Help text of the `--seconds` of scenarios, with the default and the scenarios that have another one.
+pub(super) fn seconds_help() -> String {
+    let usual = ScenarioName::Step.default_seconds();
+    let mut help = format!("Duration of each run, s [default: {usual}");
+    for scenario in ScenarioName::ALL {
+        let seconds = scenario.default_seconds();
+        if seconds != usual {
+            help += &format!("; scenario {scenario}: {seconds}");
+        }
+    }
+    help + "]"
 }
 
 /// Opens these recordings. `name` is that of the argument. A recording that is there twice is refused: it says

@@ -23,7 +23,9 @@ use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{ParameterOptions, distinct, kinds_at, scenarios};
+use super::arguments::{
+    ParameterOptions, distinct, handle_help, kinds_at, scenarios, seconds_help,
+};
 use super::closed_loop;
 use super::page::{self, progress};
 use super::rates::{PAPER_HZ, repeatable};
@@ -67,8 +69,7 @@ pub(super) struct Compare {
     pub(super) closed_loop: bool,
     #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME", help = scenario_help())]
     pub(super) scenarios: Vec<String>,
-    /// Estimator of the handle's velocity, only with --closed-loop [default: kalman-triple-steady]
-    #[arg(long, value_name = "NAME", requires = "closed_loop")]
+    #[arg(long, value_name = "NAME", requires = "closed_loop", help = handle_help() + ", only with --closed-loop")]
     pub(super) handle_estimator: Option<String>,
     #[arg(long = "rate", value_name = "HZ", help = rate_help())]
     pub(super) rates: Vec<f64>,
@@ -78,8 +79,7 @@ pub(super) struct Compare {
     /// Seed of all random numbers; seeds from 2^32 on are reserved for host-sim tune
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
-    /// Duration of each run, s [default: 10; scenario heating: 60]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", help = seconds_help())]
     pub(super) seconds: Option<f64>,
     /// Simulate the plant without Coulomb friction
     #[arg(long)]

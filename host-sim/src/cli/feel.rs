@@ -17,7 +17,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, distinct};
+use super::arguments::{ParameterOptions, distinct, handle_help};
 use super::closed_loop;
 use super::compare::longer_than_skipped;
 use super::page::{self, progress};
@@ -45,8 +45,7 @@ pub(super) struct Feel {
     /// without edge time stamps]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// Estimator of the handle's velocity [default: kalman-triple-steady]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = handle_help())]
     pub(super) handle_estimator: Option<String>,
     /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]

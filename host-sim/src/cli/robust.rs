@@ -10,6 +10,7 @@ use experiments::robust::variation::Subject;
 use experiments::robust::{Settings, summary};
 use experiments::rows;
 use experiments::table::layout::{NARROW, terminal_width};
+use experiments::transparency::compare::DEFAULT_ESTIMATOR;
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use shards::Part;
@@ -36,7 +37,7 @@ pub(super) struct Robust {
     #[arg(long, value_name = "HZ", default_value_t = 10e3, help = loop_rate_help())]
     pub(super) rate: f64,
     /// Estimator of both velocities, see host-sim estimators
-    #[arg(long, value_name = "NAME", default_value = "kalman-triple-steady")]
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ESTIMATOR)]
     pub(super) estimator: String,
     /// Number of random devices per scene, 0 to 10000000; the corners of the ranges are added
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(0..=10_000_000))]

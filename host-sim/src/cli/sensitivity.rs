@@ -15,7 +15,9 @@ use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, check_rates, distinct, kinds_at, scenarios};
+use super::arguments::{
+    ParameterOptions, check_rates, distinct, kinds_at, scenarios, seconds_help,
+};
 use super::page;
 use super::rates::{USUAL_HZ, rate_help, repeatable};
 use super::shard::{Asked, Outputs};
@@ -40,8 +42,7 @@ pub(super) struct Sensitivity {
     /// Seed of all random numbers; repeatable [default: 1]
     #[arg(long = "seed", value_name = "N")]
     pub(super) seeds: Vec<u64>,
-    /// Duration of each run, s [default: 10; scenario heating: 60]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", help = seconds_help())]
     pub(super) seconds: Option<f64>,
     #[command(flatten)]
     pub(super) device: DeviceFile,

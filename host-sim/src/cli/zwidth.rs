@@ -40,7 +40,11 @@ pub(super) struct Zwidth {
     pub(super) estimators: Vec<String>,
     /// Estimator of the handle's velocity [default: that of the large motor, or kalman-triple if
     /// that one needs the current]
-    #[arg(long, value_name = "NAME")]
+    #[arg(
+        long = "handle-estimator",
+        visible_alias = "handle",
+        value_name = "NAME"
+    )]
     pub(super) handle: Option<String>,
     /// Search also with the true velocities of both motors in the place of estimates
     #[arg(long)]

@@ -226,12 +226,12 @@ fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
         (&["--estimator", "kalmann"][..], "no estimator 'kalmann'"),
         (&["--handle", "pl"], "no estimator 'pl'"),
         (
-            &["--handle", "m-over-t"],
+            &["--handle-estimator", "m-over-t"],
             "m-over-t: needs edge time stamps, which the closed loop does not have",
         ),
         (
-            &["--handle", "adaptive"],
-            "--handle adaptive: it models the large motor, not the handle",
+            &["--handle-estimator", "adaptive"],
+            "--handle-estimator adaptive: it models the large motor, not the handle",
         ),
         (&["--rate", "50"], "--rate 50: a closed loop needs a"),
         (

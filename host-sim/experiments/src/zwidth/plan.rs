@@ -41,7 +41,7 @@ impl Experiment for Plan {
         let kinds: Vec<_> = kinds.collect::<Result<_, _>>()?;
         check_stamps(kinds.iter().copied())?;
         let handle = self.handle.as_deref().map(Kind::named).transpose()?;
-        handle.map_or(Ok(()), |kind| check_handle("--handle", kind))?;
+        handle.map_or(Ok(()), |kind| check_handle("--handle-estimator", kind))?;
         let triple = Kind::named("kalman-triple")?;
         let mut cases = Vec::new();
         for &rate_hz in &self.rates_hz {
