@@ -65,7 +65,7 @@ pub(crate) const CHANNELS: [Channel; 2] = [
 
 /// Whether an image measures currents.
 pub(crate) fn are_measured(hello: &Hello) -> bool {
-    hello.features.names().any(|name| name == FEATURE)
+    hello.features.has(FEATURE)
 }
 
 /// Steady commands, each with its measured current, A.

@@ -46,7 +46,7 @@ pub(crate) fn called(number: u8) -> String {
 /// Names of the estimators of an image, each at its number.
 #[must_use]
 pub fn estimators(hello: &Hello) -> &'static [&'static str] {
-    let has = |feature| hello.features.names().any(|name| name == feature);
+    let has = |feature| hello.features.has(feature);
     if has("large-foaw") {
         &large::NAMES[..1]
     } else if has("large-kalman") {

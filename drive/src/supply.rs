@@ -11,7 +11,7 @@ const FEATURE: &str = "supply-monitor";
 
 /// Whether an image reads the voltage.
 pub(crate) fn is_read(hello: &Hello) -> bool {
-    hello.features.names().any(|name| name == FEATURE)
+    hello.features.has(FEATURE)
 }
 
 /// The line on the voltages of a time: their mean, and whether all of them are in the range in which the

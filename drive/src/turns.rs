@@ -47,7 +47,7 @@ const ENCODERS: [Encoder; 2] = [
 
 /// Whether an image captures index pulses.
 pub(crate) fn are_captured(hello: &Hello) -> bool {
-    hello.features.names().any(|name| name == FEATURE)
+    hello.features.has(FEATURE)
 }
 
 /// Watches both shafts while they are turned by hand, with the amplifiers disabled, until both have made a

@@ -206,3 +206,28 @@ fn seconds(text: &str) -> Result<f64, String> {
     let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 1e5);
     seconds.ok_or_else(|| "must be above 0 s, at most 100000 s".to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+    use haptic_control::Excite;
+
+    use super::*;
+
+    #[test]
+    fn help_and_page_have_the_currents_of_the_strokes() {
+        let strokes = Excite::STROKES;
+        let currents = format!("{} A and {} A", strokes.large.get(), strokes.small.get());
+        let command = Arguments::command();
+        for name in ["bring-up", "calibrate"] {
+            let help = command.find_subcommand(name).and_then(|it| it.get_about());
+            let help = help.expect("a help text").to_string();
+            let said = format!("Moves the motors, at most with {currents}");
+            assert!(help.contains(&said), "{help}");
+        }
+        let page = include_str!("../../../docs/board.md");
+        assert!(page.contains(&format!(
+            "in the strokes of the scene `excite`, at most {currents}"
+        )));
+    }
+}

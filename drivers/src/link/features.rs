@@ -49,6 +49,7 @@ crate::link_features!(names);
 /// let features = Features::from_flags(&[true, false, true]);
 /// assert_eq!(features, Features(0b101));
 /// assert!(features.names().eq(["auto-arm", "edge-capture"]));
+/// assert!(features.has("edge-capture") && !features.has("reference"));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Features(pub u32);
@@ -73,5 +74,11 @@ impl Features {
         (0..)
             .zip(FEATURES)
             .filter_map(move |(bit, name)| set(bit).then_some(*name))
+    }
+
+    /// Whether the feature of this name is set.
+    #[must_use]
+    pub fn has(self, name: &str) -> bool {
+        self.names().any(|set| set == name)
     }
 }
