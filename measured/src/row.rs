@@ -16,7 +16,8 @@ impl Row {
         Self { table, cells }
     }
 
-    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+    /// Names of the columns, in the order of the file.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
         self.cells.iter().map(|(name, _)| &**name)
     }
 
