@@ -25,6 +25,9 @@ use crate::parameters::{Parameters, PlantKind};
 use terminal::failure::Failure;
 use terminal::wording::unknown;
 
+/// Name of the estimator whose errors are the 100 % of the scores.
+pub const DIFFERENCE: &str = "finite-difference";
+
 /// An estimator that can be built: its row of the catalogue, with its builder.
 ///
 /// The facts of the row are fields of the kind: `kind.name`, `kind.parameters`.

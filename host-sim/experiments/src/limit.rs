@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
 use crate::parallel::in_order;
-use catalogue::estimators::Kind;
+use catalogue::estimators::{DIFFERENCE, Kind};
 use scoring::evaluation::Evaluation;
 use scoring::score::{Truth, Wanted};
 use simulation::scenario::{Role, ScenarioName, TORQUE_INTENSITY_NM2_S};
@@ -155,7 +155,7 @@ fn run(
     let truth = Truth::new(omega, case.rate_hz, interval(&settings.device), wanted)
         .map_err(|error| Failure::Input(format!("{}: {error}", case.scenario)))?;
     let rms = |velocity: &[f32]| truth.score(velocity).rms_rad_s.unwrap_or(f64::NAN);
-    let difference = Kind::named("finite-difference")?.build(&setup, &Vec::new())?;
+    let difference = Kind::named(DIFFERENCE)?.build(&setup, &Vec::new())?;
     let reference = rms(&difference.run(&trace));
     let noise = noise(case.scenario);
     let of = |edges| {

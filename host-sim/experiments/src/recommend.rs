@@ -26,9 +26,6 @@ pub use table::{lines, reads, table};
 /// Errors that differ by less than this part are equal: the cheaper estimator is named.
 const EQUAL: f64 = 0.01;
 
-/// The 100 % of the scores.
-const DIFFERENCE: &str = "finite-difference";
-
 /// Instructions per update on a Cortex-M4F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::compare::{Case, Settings, interval, setup_of, trace};
 use crate::parallel::in_order;
 use catalogue::constant_error::ConstantError;
-use catalogue::estimators::Kind;
+use catalogue::estimators::{DIFFERENCE, Kind};
 use scoring::score::{Truth, Wanted};
 use terminal::failure::Failure;
 
@@ -141,7 +141,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<Cell>, Failure> {
             score.outside.ok_or_else(missing)?,
         ))
     };
-    let (reference, _) = score(Kind::named("finite-difference")?, None)?;
+    let (reference, _) = score(Kind::named(DIFFERENCE)?, None)?;
     let constant_errors = ConstantError::at(&PARTS);
     let wrong = constant_errors.iter().enumerate();
     let assumed: Vec<_> = std::iter::once(None).chain(wrong.map(Some)).collect();

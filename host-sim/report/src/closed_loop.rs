@@ -14,6 +14,7 @@ use super::ReportInput;
 use super::palette::Palette;
 use super::section::{Section, explained, explanation, joined};
 use super::text::{number, plant, rate, share};
+use catalogue::estimators::DIFFERENCE;
 use catalogue::parameters::PlantKind;
 use experiments::distinct::distinct;
 use experiments::transparency::{Design, Outcome, REFERENCE, Run, Swept};
@@ -204,7 +205,7 @@ fn in_words(closed: &ClosedLoop) -> Option<String> {
                 share(best.parasitic.below_threshold?),
             );
             let others = [
-                ("finite-difference", "finite difference"),
+                (DIFFERENCE, "finite difference"),
                 (REFERENCE, "reference encoder"),
             ];
             let others: Vec<String> = (others.into_iter())

@@ -12,6 +12,7 @@ use panel::{Curve, Panel, range};
 use super::canvas::{Anchor, Key, TITLE, WIDTH, figure, legend_height};
 use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
+use catalogue::estimators::DIFFERENCE;
 use recordings::recording::Recording;
 use scoring::evaluation::Estimate;
 use scoring::score::HapticInterval;
@@ -168,7 +169,7 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
             let mut curve = Curve::new(estimate.estimator, colour, &values);
             // The axis follows the other estimates: quantisation of this one would hide their
             // differences.
-            curve.sizes = estimate.estimator != "finite-difference";
+            curve.sizes = estimate.estimator != DIFFERENCE;
             curve
         })
         .collect();

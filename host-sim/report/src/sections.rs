@@ -14,6 +14,7 @@ use super::{
     ReportInput, closed_loop, cost, damping, distances, quantisation, score_tables, sensitivity,
     spectra, tables, windows,
 };
+use catalogue::estimators::DIFFERENCE;
 use experiments::compare::interval;
 use experiments::sensitivity::table::rows_by_rate;
 use scoring::score::SKIP_S;
@@ -140,10 +141,7 @@ fn quantisation_figure(report: &ReportInput, palette: &Palette) -> Result<Option
         let Some(case) = cases.first() else { continue };
         let Some(traces) = &case.traces else { continue };
         let estimators = &traces.estimates;
-        let Some(at) = estimators
-            .iter()
-            .position(|(name, _)| name == "finite-difference")
-        else {
+        let Some(at) = estimators.iter().position(|(name, _)| name == DIFFERENCE) else {
             continue;
         };
         let Some(window) = windows::around_step(traces, 0.05, 0.20) else {

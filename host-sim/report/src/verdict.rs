@@ -4,6 +4,7 @@ use super::ReportInput;
 use super::grid::{Group, groups};
 use super::palette::Palette;
 use super::text::{plant, rate, share};
+use catalogue::estimators::DIFFERENCE;
 
 /// The best estimator of each rate by its time inside the haptic interval; `None` if no case has
 /// this score.
@@ -42,10 +43,9 @@ fn clause(group: &Group, palette: &Palette) -> Option<String> {
         rate(group.rate_hz),
         share(often)
     );
-    let reference = "finite-difference";
     if let Some((_, often, _)) = ranked
         .iter()
-        .find(|r| r.0 == reference && best != reference)
+        .find(|r| r.0 == DIFFERENCE && best != DIFFERENCE)
     {
         text += &format!(" (finite difference: {})", share(*often));
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::score::{HapticInterval, SKIP_S, Score, Wanted};
-use catalogue::estimators::{Estimator, Kind, Setup};
+use catalogue::estimators::{DIFFERENCE, Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -162,7 +162,7 @@ impl Evaluation {
                 .iter()
                 .map(|&kind| new(kind))
                 .collect::<Result<_, _>>()?,
-            difference: new(Kind::named("finite-difference")?)?,
+            difference: new(Kind::named(DIFFERENCE)?)?,
             assumed_damping: setup.stages.damping,
         })
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use catalogue::estimators::DIFFERENCE;
 use experiments::compare::interval;
 use experiments::replay;
 use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
@@ -18,7 +19,7 @@ use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, is_stdin, short_name};
 
 /// Estimators that are drawn by default.
-const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
+const ESTIMATORS: [&str; 2] = [DIFFERENCE, "kalman-triple-steady"];
 
 #[derive(Debug, Args)]
 pub(super) struct Plot {

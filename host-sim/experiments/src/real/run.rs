@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use catalogue::estimators::{Kind, Setup};
+use catalogue::estimators::{DIFFERENCE, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use scoring::evaluation::{self, Estimate, Evaluation, Heading};
 use scoring::score::Wanted;
@@ -116,7 +116,7 @@ fn outcome(
     // A real device has friction.
     let plant = PlantKind::Friction;
     let mut kinds = settings.estimators.clone();
-    let difference = Kind::named("finite-difference")?;
+    let difference = Kind::named(DIFFERENCE)?;
     if !kinds.iter().any(|kind| kind.name == difference.name) {
         kinds.push(difference);
     }

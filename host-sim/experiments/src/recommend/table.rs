@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use catalogue::estimators::Kind;
+use catalogue::estimators::{DIFFERENCE, Kind};
 use terminal::wording::wrapped;
 
-use super::{DIFFERENCE, Ranked, Recommendation};
+use super::{Ranked, Recommendation};
 use crate::table::layout::{Column, table as side_by_side};
 use crate::table::number;
 

@@ -8,6 +8,7 @@ use super::super::plot::Axis;
 use super::super::text::{number, plant, rate};
 use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, best, find, uses_velocity};
+use catalogue::estimators::DIFFERENCE;
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Outcome, REFERENCE, Run, Signals};
 use scoring::score::SKIP_S;
@@ -104,8 +105,8 @@ fn figure(
 
 /// Runs with signals of finite difference, of the best other estimator and of the reference encoder.
 fn chosen(outcome: &Outcome) -> Vec<&Run> {
-    let difference = find(outcome, "finite-difference");
-    let best = best(outcome, |name| name != "finite-difference");
+    let difference = find(outcome, DIFFERENCE);
+    let best = best(outcome, |name| name != DIFFERENCE);
     let mut runs: Vec<&Run> = Vec::new();
     for run in [difference, best, find(outcome, REFERENCE)]
         .into_iter()
