@@ -15,8 +15,8 @@ use crate::score::Range;
 /// Share of the processor's cycles that the control task may use.
 pub const LOAD: f64 = 0.5;
 
-/// Time for boot, arming and settling, s.
-const SETTLED_S: f64 = 0.4;
+/// Time for boot, arming and settling, s: scores and costs are those of later ticks.
+pub(crate) const SETTLED_S: f64 = 0.4;
 
 /// Numbers of ticks whose cycles are estimated: the longest by instructions, and groups of
 /// consecutive ticks spread over the run, each as long as the time between two telemetry frames.

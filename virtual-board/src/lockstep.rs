@@ -15,6 +15,7 @@ use experiments::closed_loop::{Bench, FeedbackEncoder, Motion};
 use rigless::emulator::{AccessKind, HitKind, Host, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use simulation::device::LONGEST_STEP_S;
 use simulation::encoder::{DiscErrors, Encoder};
 use simulation::plant::Grip;
 
@@ -36,8 +37,10 @@ use core_access::CoreAccesses;
 use follow::Follow;
 use inject::Stalls;
 
+/// Step of the plant, ns and s.
 const STEP_NS: u64 = 10_000;
 const STEP_S: f64 = 10e-6;
+const _: () = assert!((STEP_S * 1e9 + 0.5) as u64 == STEP_NS && STEP_S <= LONGEST_STEP_S);
 /// Steps of the plant per tick of the hand, and per poll of the debug probe.
 const STEPS_PER_TICK: u64 = (1e9 / HAND_HZ) as u64 / STEP_NS;
 const STEPS_PER_LOOK: u64 = 100;

@@ -5,12 +5,9 @@ use std::fmt::Write as _;
 use drivers::NO_ESTIMATOR;
 use haptic_control::SceneKind;
 
-use crate::budget;
+use crate::budget::{self, SETTLED_S};
 use crate::run::{Outcome, Setup};
 use crate::score::Range;
-
-/// Time for boot and arming, s.
-const SETTLED_S: f64 = 0.4;
 
 /// Name of a state or a cause with its code in telemetry.
 fn numbered(name: &str, number: u8) -> String {
