@@ -35,6 +35,17 @@ impl Constant {
         }
     }
 
+    /// Symbol in equations and headings.
+    #[must_use]
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Damping => "b",
+            Self::Inertia => "J",
+            Self::TorqueConstant => "Kt",
+            Self::Friction => "Tc",
+        }
+    }
+
     /// Largest relative error in sensitivity experiments. Friction is the least known constant.
     #[must_use]
     pub const fn largest_error(self) -> f64 {

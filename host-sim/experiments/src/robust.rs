@@ -14,9 +14,9 @@ use haptic_control::{LoopPoles, SceneKind};
 use serde::{Deserialize, Serialize};
 
 use crate::closed_loop::{FeedbackEncoder, Loop, environments_with, loop_ticks, named, usual};
+use crate::distinct::distinct;
 use crate::parallel::in_order;
-use catalogue::estimators::Setup;
-use catalogue::estimators::{Estimator, Kind};
+use catalogue::estimators::{Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use judge::{Instant, Judge};
 use row::RobustRow;
@@ -80,16 +80,12 @@ impl Settings {
     /// # Errors
     /// One line that names an unknown scene.
     pub fn scene_names(names: &[String], kind: &'static Kind) -> Result<Vec<String>, String> {
-        let mut scenes: Vec<SceneKind> = Vec::new();
-        for name in names {
-            let scene = named(name, SceneKind::environments())?;
-            if !scenes.contains(&scene) {
-                scenes.push(scene);
-            }
-        }
-        if scenes.is_empty() {
-            scenes.extend(environments_with(kind));
-        }
+        let scene = |name: &String| named(name, SceneKind::environments());
+        let scenes: Vec<SceneKind> = names.iter().map(scene).collect::<Result<_, _>>()?;
+        let scenes = match scenes.is_empty() {
+            true => environments_with(kind).collect(),
+            false => distinct(scenes),
+        };
         Ok(scenes.iter().map(ToString::to_string).collect())
     }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::distinct::distinct;
 use scoring::evaluation::Row;
 use scoring::score::{Field, Over, Score};
 
@@ -138,12 +139,7 @@ fn same_case(a: &Row, b: &Row) -> bool {
 /// A line on the scenarios in which `what`, which an error is divided by, has no error; none without a
 /// scenario.
 pub fn no_percentage<'a>(scenarios: impl Iterator<Item = &'a str>, what: &str) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    for scenario in scenarios {
-        if !names.contains(&scenario) {
-            names.push(scenario);
-        }
-    }
+    let names = distinct(scenarios);
     if names.is_empty() {
         return String::new();
     }

@@ -221,14 +221,9 @@ pub(super) fn scenarios(
     if names.is_empty() {
         return Ok(default.to_vec());
     }
-    let mut scenarios = Vec::new();
-    for name in names {
-        let scenario = name.parse()?;
-        if !scenarios.contains(&scenario) {
-            scenarios.push(scenario);
-        }
-    }
-    Ok(scenarios)
+    let scenarios = names.iter().map(|name| name.parse());
+    let scenarios: Vec<_> = scenarios.collect::<Result<_, String>>()?;
+    Ok(distinct(&scenarios, &[]))
 }
 
 /// Help text of a `--handle-estimator`, with the default.

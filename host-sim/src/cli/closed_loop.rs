@@ -101,12 +101,9 @@ pub(super) fn for_report(options: &Compare) -> (ClosedLoop, Option<String>) {
 
 /// Input of the report: the outcomes, and sweep and design of the velocity loop at their rates.
 fn closed_loop(outcomes: Vec<Outcome>, settings: &LoopSettings) -> Result<ClosedLoop, Failure> {
-    let mut rates: Vec<(f64, PlantKind)> = Vec::new();
-    for Outcome { case, .. } in &outcomes {
-        if !rates.contains(&(case.rate_hz, case.plant)) {
-            rates.push((case.rate_hz, case.plant));
-        }
-    }
+    let rates = (outcomes.iter()).map(|outcome| (outcome.case.rate_hz, outcome.case.plant));
+    let rates: Vec<_> = rates.collect();
+    let rates = distinct(&rates, &[]);
     let each = || rates.iter().copied();
     Ok(ClosedLoop {
         outcomes,
@@ -180,19 +177,14 @@ pub(super) fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneKind>, 
     if names.is_empty() {
         return Ok(environments_with(handle).collect());
     }
-    let mut scenes = Vec::new();
-    for name in names {
-        let scene = named(name, SceneKind::environments()).map_err(|error| {
-            match name.parse::<ScenarioName>() {
-                Ok(_) => format!("scenario '{name}' cannot close a loop: {error}"),
-                Err(_) => error,
-            }
-        })?;
-        if !scenes.contains(&scene) {
-            scenes.push(scene);
-        }
-    }
-    Ok(scenes)
+    let scene = |name: &String| {
+        named(name, SceneKind::environments()).map_err(|error| match name.parse::<ScenarioName>() {
+            Ok(_) => format!("scenario '{name}' cannot close a loop: {error}"),
+            Err(_) => error,
+        })
+    };
+    let scenes: Vec<_> = names.iter().map(scene).collect::<Result<_, _>>()?;
+    Ok(distinct(&scenes, &[]))
 }
 
 /// The cases, rate by rate.

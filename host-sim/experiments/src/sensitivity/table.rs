@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::SensitivityRow;
+use crate::distinct::distinct;
 use crate::table::layout::{self, Column};
 use catalogue::constant_error::ConstantError;
 use terminal::wording::wrapped;
@@ -49,7 +50,7 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
         for (i, constant_error) in ConstantError::extremes().iter().enumerate() {
             let head = format!(
                 "{} {:+.0} %",
-                short(constant_error.constant.as_str()),
+                constant_error.constant.symbol(),
                 100.0 * constant_error.error
             );
             columns.push(column(&head, "%", &|of| of.wrong[i]));
@@ -66,12 +67,8 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
 
 /// The lines below the table of one rate.
 fn notes(rows: &[&SensitivityRow]) -> String {
-    let mut resting: Vec<&str> = Vec::new();
-    for row in rows.iter().filter(|row| percentage(row).is_none()) {
-        if !resting.contains(&row.scenario) {
-            resting.push(row.scenario);
-        }
-    }
+    let resting = rows.iter().filter(|row| percentage(row).is_none());
+    let resting = distinct(resting.map(|row| row.scenario));
     let mut text = String::new();
     if !resting.is_empty() {
         let note = format!(
@@ -163,25 +160,10 @@ fn mean(
     sum / count
 }
 
-fn short(constant: &str) -> &str {
-    match constant {
-        "damping" => "b",
-        "inertia" => "J",
-        "torque-constant" => "Kt",
-        _ => "Tc",
-    }
-}
-
 /// Names of the estimators, in order of appearance.
 #[must_use]
 pub fn names<'a>(rows: &[&'a SensitivityRow]) -> Vec<&'a str> {
-    let mut names = Vec::new();
-    for row in rows {
-        if !names.contains(&row.estimator) {
-            names.push(row.estimator);
-        }
-    }
-    names
+    distinct(rows.iter().map(|row| row.estimator))
 }
 
 /// The rows of each rate, in order of appearance.

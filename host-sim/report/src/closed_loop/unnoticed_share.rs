@@ -8,6 +8,7 @@ use super::super::palette::{GRID, INK, MUTED, Palette};
 use super::super::plot::{Axis, Plot};
 use super::super::text::{rate, share};
 use super::{ClosedLoop, find, uses_velocity};
+use experiments::distinct::distinct;
 use experiments::transparency::Outcome;
 
 /// Sizes, px.
@@ -25,15 +26,12 @@ pub(super) fn shares(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, Stri
         .chain([Key::Line(MUTED.into(), "any")])
         .collect();
     let mut scenes: Vec<(&str, f64)> = Vec::new();
-    let mut rates: Vec<f64> = Vec::new();
+    let rates = distinct(closed.outcomes.iter().map(|outcome| outcome.case.rate_hz));
     for outcome in &closed.outcomes {
         let scene = outcome.case.scene.name();
         if !scenes.iter().any(|(known, _)| *known == scene) {
             let bars = BAR * names.len() as f64 + BETWEEN;
             scenes.push((scene, if uses_velocity(outcome) { bars } else { LONE }));
-        }
-        if !rates.contains(&outcome.case.rate_hz) {
-            rates.push(outcome.case.rate_hz);
         }
     }
     let widest = scenes.iter().map(|(scene, _)| text_width(scene, 12.0));
