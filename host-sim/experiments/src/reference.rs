@@ -20,6 +20,7 @@ mod noises;
 mod sections;
 mod state;
 mod sweeps;
+mod thinned;
 
 use std::f64::consts::TAU;
 
@@ -115,7 +116,8 @@ impl Reference {
     ) -> Self {
         let rows = recording.t.len();
         let period = recording.trace.period_s();
-        let motion = Motion::of(recording);
+        let mut motion = Motion::of(recording);
+        thinned::pass_over(&mut motion.rows, recording);
         let model = Model {
             jerk: noises.jerk * period.powi(5),
             sensor: noises.sensor,
@@ -205,6 +207,8 @@ impl Noises {
                  {FEWEST_CHANGES}: record more motion"
             ));
         }
+        let thinned = thinned::thinned(recording);
+        let recording = thinned.as_ref().unwrap_or(recording);
         let period = recording.trace.period_s();
         let model = noises::most_likely(recording, &Motion::of(recording), period);
         Ok(Self {

@@ -7,6 +7,7 @@ use simulation::trace::{EdgeStamp, Trace};
 use super::*;
 
 mod faults;
+mod slow;
 
 /// Noises per period and count of the synthetic recordings.
 const JERK: f64 = 1e-8;
