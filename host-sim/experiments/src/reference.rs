@@ -169,13 +169,17 @@ impl Reference {
             ),
             false => String::new(),
         };
+        let bandwidth = match self.bandwidth_hz {
+            fast if fast >= 10.0 => format!("{fast:.0}"),
+            slow if slow >= 0.1 => format!("{slow:.1}"),
+            rest => number(Some(rest)),
+        };
         format!(
             "the reference is smoothed from the counts in both directions of time; its standard \
              deviation is {} rad/s (RMS), so errors below {} rad/s rank no estimator. It does not \
-             resolve motion above about {:.0} Hz, motion within a count, and errors of the encoder's disc{noise}",
+             resolve motion above about {bandwidth} Hz, motion within a count, and errors of the encoder's disc{noise}",
             number(Some(sd)),
             number(Some(RESOLVED * sd)),
-            self.bandwidth_hz
         )
     }
 

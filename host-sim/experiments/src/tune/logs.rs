@@ -15,6 +15,7 @@ use shards::Experiment;
 use super::search::{best_values, ends_of_ranges};
 use crate::rates::check_same;
 use crate::reference::{Reference, interruptions};
+use crate::table::number;
 use catalogue::estimators::{Kind, Lack, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
 use recordings::recording::Recording;
@@ -273,7 +274,8 @@ fn track(
                 let sd = reference.rms_sd(rate_hz);
                 let note = format!(
                     "{name}: no column true_omega; errors are those against a smoother of the log itself, \
-                     whose own standard deviation is {sd:.3} rad/s"
+                     whose own standard deviation is {} rad/s",
+                    number(Some(sd))
                 );
                 (reference.omega, Some(note))
             }
