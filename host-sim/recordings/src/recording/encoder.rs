@@ -1,6 +1,7 @@
 //! Counts of an encoder while its column is read.
 
 pub(super) mod absolute;
+mod clipped;
 pub(super) mod grid;
 pub(super) mod held;
 
@@ -13,6 +14,7 @@ use super::numbers::shown;
 use super::options::units::Scale;
 use super::options::{Column, ReadOptions};
 use super::text::row::Row;
+use clipped::Clipped;
 use grid::Grid;
 use held::Held;
 
@@ -52,6 +54,7 @@ pub(super) struct Encoder {
     exact: Option<f64>,
     grid: Grid,
     held: Held,
+    clipped: Clipped,
     /// Whether the column has counts, not an angle.
     is_counts: bool,
     /// Number of rows whose reading differs from the row before.
@@ -94,6 +97,7 @@ impl Encoder {
             }
             _ => {
                 let raw = row.count(column, at.place)?;
+                self.clipped.add(raw);
                 (raw, raw as f64)
             }
         };
@@ -142,7 +146,8 @@ impl Encoder {
                 self.changes
             )
         });
-        step.into_iter().chain(line)
+        let clipped = self.clipped.note(column);
+        step.into_iter().chain(line).chain(clipped)
     }
 
     /// Note on a position that is held over several rows at `rate_hz`. Counts that change by one alone are those of a slow

@@ -158,3 +158,30 @@ fn current_that_no_amplifier_delivers_is_reported_once_a_file() {
         "{line}"
     );
 }
+
+#[test]
+fn counts_that_a_logger_clips_are_reported() {
+    let folder = Folder::new(HOST_SIM);
+    let count = |k: i32| 40_000.0 * (f64::from(k) * 0.004).sin();
+    let row = |k: i32| {
+        format!(
+            "{},{:.0}\n",
+            f64::from(k) * 1e-3,
+            count(k).clamp(-32_768.0, 32_767.0)
+        )
+    };
+    let text: String = (0..1500).map(row).collect();
+    folder.write("clipped.csv", format!("t,counts\n{text}"));
+    let output = folder.run(&[
+        "replay",
+        "clipped.csv",
+        "--estimator",
+        "pll",
+        "--out",
+        "v.csv",
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    let notes = String::from_utf8(output.stderr).unwrap();
+    let said = "clipped.csv: counts_large comes to 32767 and stays there, in ";
+    assert!(notes.contains(said), "{notes}");
+}
