@@ -3,7 +3,7 @@
 use terminal::failure::Failure;
 
 /// First bytes of a file, what it is, and the remedy.
-const KINDS: [(&[u8], &str, &str); 20] = [
+const KINDS: [(&[u8], &str, &str); 24] = [
     (ZIP, "a zip file", "unpack it with unzip -p"),
     (b"\xD0\xCF\x11\xE0", "a workbook of Excel", SHEET),
     (b"\x93NUMPY", "a file of NumPy", NUMPY),
@@ -40,6 +40,14 @@ const KINDS: [(&[u8], &str, &str); 20] = [
     (b"ULog", "a ULog of PX4", "write it as CSV with ulog2csv"),
     (b"MDF     ", "an MDF file", CSV),
     (b"LOGG", "a BLF file of Vector", CSV),
+    (b"<!DOCTYPE", "a page of HTML", PAGE),
+    (b"<!doctype", "a page of HTML", PAGE),
+    (b"<html", "a page of HTML", PAGE),
+    (
+        b"version https://git-lfs",
+        "a pointer of Git LFS in the place of the log",
+        "fetch the log with git lfs pull",
+    ),
 ];
 
 const ZIP: &[u8] = b"PK\x03\x04";
@@ -52,6 +60,7 @@ const ZIPPED: [(&[u8], &str, &str); 3] = [
 ];
 
 const CSV: &str = "write it as CSV";
+const PAGE: &str = "download the log itself";
 const SHEET: &str = "save the sheet as CSV";
 const NUMPY: &str =
     "write the columns with numpy.savetxt, or give the arrays to limpid.replay in Python";
@@ -114,6 +123,16 @@ mod tests {
         );
         assert!(
             error(b"#ROSBAG V2.0\n").contains("this is a bag of ROS 1; write a topic as CSV, or")
+        );
+        assert_eq!(
+            error(b"<!DOCTYPE html>\n<html><body>404</body></html>\n"),
+            "r.csv: line 1: this is a page of HTML; download the log itself, or give the text as -"
+        );
+        let pointer =
+            error(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12\n");
+        assert!(
+            pointer.contains("fetch the log with git lfs pull"),
+            "{pointer}"
         );
         // 12 of 256 bytes are less than a twentieth.
         let controls = |number| {
