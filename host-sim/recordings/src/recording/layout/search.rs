@@ -129,7 +129,7 @@ fn without_numbers(lines: &[&str], limit: Option<String>) -> Layout {
 fn name_columns(names: &[String]) -> bool {
     let [mut timed, mut placed] = [false; 2];
     for name in names {
-        match has(name, TIMES) {
+        match has(name, TIMES) || has(name, &["t"]) {
             true => timed = true,
             false => placed |= has(name, POSITIONS),
         }

@@ -104,7 +104,7 @@ fn last_row_may_be_cut_anywhere() {
     }
     let error = read("t,counts_large\n0,0\n0.1,3\n0.2\n", "").unwrap_err();
     assert!(
-        error.contains("line 4: 1 fields where the first line has 2"),
+        error.contains("line 4: 1 field where the first line has 2"),
         "{error}"
     );
 }
@@ -132,4 +132,19 @@ fn rate_of_no_control_loop_is_noted() {
         let found = recording.notes.iter().filter(|note| note.starts_with(said));
         assert_eq!(found.count(), notes, "{unit}");
     }
+}
+
+#[test]
+fn header_above_numbers_with_separators_of_thousands_is_found() {
+    // The first line of numbers is the third row.
+    let rows = "0.000;1'200\n0.001;1'000\n0.002;800\n0.003;-1'000\n";
+    for time in ["t", "time"] {
+        let error = read(&format!("{time};counts\n{rows}"), "").unwrap_err();
+        assert!(!error.contains("no names"), "{error}");
+    }
+    let error = read(&format!("t;counts\n{rows}"), "").unwrap_err();
+    assert!(
+        error.contains("line 5: column counts_large: '-1\\'000' is not a number; write it without separators of thousands"),
+        "{error}"
+    );
 }
