@@ -346,7 +346,7 @@ mod tests {
             ),
             (
                 "t,counts_large\n0,0\n0.1\n",
-                "r.csv: line 3: 1 fields where the first line has 2",
+                "r.csv: line 3: 1 field where the first line has 2",
             ),
             ("t,counts_large\n0,0\n", "r.csv: fewer than two rows"),
             (

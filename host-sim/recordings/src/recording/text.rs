@@ -106,8 +106,9 @@ impl<R: BufRead> Text<R> {
             true => "; numbers with a decimal comma need another separator than a comma",
             false => "",
         };
+        let noun = if fields == 1 { "field" } else { "fields" };
         format!(
-            "{name}: line {line}: {fields} fields where {model} has {columns}; {remedy}{commas}"
+            "{name}: line {line}: {fields} {noun} where {model} has {columns}; {remedy}{commas}"
         )
     }
 }

@@ -56,7 +56,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "cut.csv",
         "",
-        &["line 52: 1 fields where the first line has 2; remove the line"],
+        &["line 52: 1 field where the first line has 2; remove the line"],
     ),
     (
         "thousands.csv",
