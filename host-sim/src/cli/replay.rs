@@ -13,6 +13,7 @@ use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::{Parts, Survey};
+use scoring::score::SKIP_S;
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
@@ -245,15 +246,23 @@ fn reference(
         }
         _ => {}
     }
+    let rate_hz = survey.columns.rate_hz;
+    let unscored = survey.rows as f64 <= (SKIP_S * rate_hz).round();
+    let in_columns = options.reference == Some(ReferenceUse::Columns);
     let recording = options.recording.read(log, device)?;
     match Reference::of(&recording, device.stages.large.counts_per_rev) {
+        // Nothing is left to score.
+        Ok(_) if unscored && options.json.is_none() && !in_columns => Ok(without(format!(
+            "{} rows at {rate_hz} Hz; scores begin after {SKIP_S} s",
+            survey.rows
+        ))),
         Ok(reference) => Ok(Referenced {
             reference: Some(reference),
             without: None,
             interruptions: interruptions(&recording),
         }),
         // Velocities alone need no reference.
-        Err(why) if options.json.is_none() && options.reference != Some(ReferenceUse::Columns) => {
+        Err(why) if options.json.is_none() && !in_columns => {
             Ok(without(format!("{why}; --reference off computes none")))
         }
         Err(why) => Err(Failure::Input(format!(

@@ -162,3 +162,30 @@ fn log_without_a_reference_has_velocities_and_a_note() {
         assert_eq!(written.lines().count(), 4);
     }
 }
+
+#[test]
+fn log_that_ends_before_the_scores_begin_has_velocities_and_a_note() {
+    let folder = Folder::new(HOST_SIM);
+    let count = |k: i32| (40.0 * (f64::from(k) * 0.01).sin()).floor();
+    let rows = |rows: i32| (0..rows).map(|k| format!("{},{}\n", f64::from(k) * 2e-5, count(k)));
+    let arguments = [
+        "replay",
+        "short.csv",
+        "--estimator",
+        "pll",
+        "--out",
+        "v.csv",
+    ];
+    for (length, is_scored) in [(5000, false), (5200, true)] {
+        let text: String = rows(length).collect();
+        folder.write("short.csv", format!("t,counts_large\n{text}"));
+        let output = folder.run(&arguments);
+        assert_eq!(output.status.code(), Some(0));
+        let notes = words(&String::from_utf8(output.stderr).unwrap());
+        let said = format!("no scores: {length} rows at 50000 Hz; scores begin after 0.1 s");
+        assert_eq!(notes.contains(&said), !is_scored, "{notes}");
+        let table = words(&String::from_utf8(output.stdout).unwrap());
+        assert_eq!(table.contains("pll"), is_scored, "{table}");
+        assert_eq!(folder.text("v.csv").lines().count() as i32, length + 1);
+    }
+}
