@@ -115,6 +115,20 @@ mod tests {
                 .iter()
                 .all(|line| !line.contains("changed"))
         );
+        // b is the quotient of b / J and Kt / J, times the identified Kt.
+        let mut other = found.clone();
+        other.stages.large.torque_constant *= 1.3;
+        let said = lines(&learned, &other);
+        assert!(said[0].contains("+30.0 %: changed"), "{said:?}");
+        let stronger = LearnedLine {
+            torque_constant: 0.3,
+            ..learned
+        };
+        let said = lines(&stronger, &other);
+        assert!(
+            said[0].ends_with("+0.0 %") && said[3].ends_with("+0.0 %"),
+            "{said:?}"
+        );
         // An error of the inertia changes the constants per inertia, but not b.
         found.stages.large.inertia *= 1.3;
         let said = lines(&learned, &found);

@@ -135,7 +135,8 @@ fn measured(run: &Run) -> usize {
     run.frames.iter().filter(has).count()
 }
 
-/// The run to record: that of the given number, of which 1 is the first, by default the longest.
+/// The run to record: that of the given number, of which 1 is the first, by default the longest, and the first one of
+/// several of this length.
 ///
 /// # Errors
 /// [`Failure::Input`] if the run does not exist or has fewer than two frames.

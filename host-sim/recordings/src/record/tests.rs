@@ -221,3 +221,25 @@ fn value_that_is_not_finite_is_an_empty_field_and_such_a_current_no_row() {
         assert!(said.iter().any(|it| it == line), "{said:?}");
     }
 }
+
+#[test]
+fn truth_is_asked_of_the_frames_that_have_a_row() {
+    let text = log(0..4)
+        .replacen("il=0.5", "il=NaN", 2)
+        .replacen("il=NaN", "il=0.5", 1);
+    let telemetry = Telemetry::text(text.as_bytes());
+    let runs = telemetry.runs();
+    // The frame without a row has no truth either.
+    let truth = |frame: &Frame| (frame.seq != 1).then_some(f64::from(frame.seq) + 0.5);
+    let recording = Recording::parse(csv(&runs[0], 1e4, truth).as_bytes(), "r").unwrap();
+    assert_eq!(recording.trace.true_omega, Some(vec![0.5, 2.5, 3.5]));
+}
+
+#[test]
+fn first_one_of_equally_long_runs_is_recorded() {
+    let text = log(3..6) + &log(0..3) + &log(0..2);
+    let telemetry = Telemetry::text(text.as_bytes());
+    let runs = telemetry.runs();
+    assert_eq!(runs.len(), 3);
+    assert_eq!(choose(&runs, None).unwrap().frames[0].1.seq, 3);
+}

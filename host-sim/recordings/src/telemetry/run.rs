@@ -220,6 +220,20 @@ mod tests {
         );
     }
 
+    #[test]
+    fn run_without_a_boot_line_is_of_the_image_before() {
+        let mut telemetry = frames(&[[0, 0], [1, 20], [2, 40], [0, 0], [1, 20]]);
+        telemetry.boots = vec![Boot {
+            after: 0,
+            rate_hz: 2e4,
+            device: None,
+            presets: None,
+        }];
+        let runs = telemetry.runs();
+        let rates: Vec<_> = runs.iter().map(Run::rate_hz).collect();
+        assert_eq!(rates, [Some(2e4); 2]);
+    }
+
     /// Two images in one log: each boot line states the rate of its frames.
     #[test]
     fn sessions_of_two_control_rates_are_runs_without_damage() {
@@ -254,13 +268,18 @@ mod tests {
 
     #[test]
     fn first_frame_after_a_reset_is_a_run_although_the_stream_ends_there() {
-        let telemetry = frames(&[[5, 50], [6, 60], [7, 70], [0, 9]]);
-        let runs = telemetry.runs();
-        assert_eq!([0, 1].map(|n| ticks(&runs[n]).len()), [3, 1]);
-        assert!(runs.iter().all(|run| run.gaps == Gaps::default()));
-        let telemetry = frames(&[[5, 50], [6, 60], [7, 70], [3, 9]]);
-        let runs = telemetry.runs();
-        assert_eq!((runs.len(), runs[0].gaps.strays), (1, 1));
+        // A frame is sent each ten ticks, the first one after ten at most.
+        for tick in [0, 9, 10] {
+            let telemetry = frames(&[[5, 50], [6, 60], [7, 70], [0, tick]]);
+            let runs = telemetry.runs();
+            assert_eq!([0, 1].map(|n| ticks(&runs[n]).len()), [3, 1], "{tick}");
+            assert!(runs.iter().all(|run| run.gaps == Gaps::default()));
+        }
+        for other in [[3, 9], [0, 11]] {
+            let telemetry = frames(&[[5, 50], [6, 60], [7, 70], other]);
+            let runs = telemetry.runs();
+            assert_eq!((runs.len(), runs[0].gaps.strays), (1, 1), "{other:?}");
+        }
     }
 
     #[test]

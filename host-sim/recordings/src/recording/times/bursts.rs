@@ -127,6 +127,16 @@ mod tests {
             })
             .collect();
         assert_eq!(refused(&changes, 0), None);
+        // Groups of rows with pauses of different lengths, as of a log that events begin.
+        let groups: Vec<_> = (0..4800)
+            .map(|k| {
+                let group = k / 16;
+                f64::from(group / 2) * 48e-3
+                    + f64::from(group % 2) * 8e-3
+                    + f64::from(k % 16) * 4e-5
+            })
+            .collect();
+        assert_eq!(refused(&groups, 0), None);
         // Rows at random.
         let (mut noise, mut t) = (1_u32, 0.0);
         let random: Vec<_> = (0..5000)

@@ -195,6 +195,41 @@ mod tests {
     }
 
     #[test]
+    fn handle_counts_are_held_beside_stamps_and_interpolated_without_them() {
+        for (stamp, expected) in [(",84000,1", [0, 0, 40]), ("", [0, 20, 40])] {
+            let edge = stamp.replace(|c: char| c.is_ascii_digit(), "");
+            let header = if stamp.is_empty() {
+                ""
+            } else {
+                ",edge_tick,edge_bound"
+            };
+            let text = format!(
+                "t,counts_large,counts_small{header}\n0,0,0{edge}\n0.002,1,40{stamp}\n0.003,1,40{stamp}\n"
+            );
+            let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+            recording.resample(1000.0, "r").unwrap();
+            let handle = recording.trace.counts_small.unwrap();
+            assert_eq!(handle[..3], expected, "{text}");
+        }
+    }
+
+    /// Rows at other times have no values of the board, and an even clock.
+    #[test]
+    fn new_rows_are_even_and_have_no_columns_of_the_board() {
+        let options = crate::recording::ReadOptions::default();
+        let mut text = String::from("t,counts_large,state\n");
+        for k in 0..50_u32 {
+            let t = f64::from(k) * 1e-3 + f64::from(k * 7 % 10) * 45e-6;
+            text += &format!("{t},{k},2\n");
+        }
+        let mut recording = Recording::parse_with_board(text.as_bytes(), "r", &options).unwrap();
+        assert!(recording.unevenness().is_some() && recording.board.column("state").is_some());
+        recording.resample(500.0, "r").unwrap();
+        assert_eq!(recording.unevenness(), None);
+        assert!(recording.board.column("state").is_none());
+    }
+
+    #[test]
     fn counts_pass_the_wrap_of_32_bits_and_even_rows_stay() {
         let text = "t,counts_large\n0,-2\n0.001,1\n0.003,7\n";
         let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();

@@ -227,3 +227,49 @@ impl Steps {
 pub(crate) fn differs(step: f64, period: f64) -> f64 {
     (step - period).abs() / period
 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD: f64 = 1e-3;
+
+    /// Ten steps of a period over which the count changes by `jump`, and one over three periods.
+    fn over_missing(jump: i64, missing: i64) -> (i64, f64) {
+        let mut steps = Steps::default();
+        for _ in 0..10 {
+            steps.add(PERIOD, [jump, 0]);
+        }
+        steps.add(3.0 * PERIOD, [missing, 0]);
+        steps.largest_jump(PERIOD, 0)
+    }
+
+    #[test]
+    fn jump_over_missing_rows_counts_beyond_twice_the_speed_of_the_others() {
+        // Twice ten counts in each of three periods.
+        assert_eq!(over_missing(10, 60), (10, 1.0));
+        let (jump, rows) = over_missing(10, 61);
+        assert!(jump == 61 && (rows - 3.0).abs() < 1e-12, "{jump} {rows}");
+        // A shaft at rest may have moved by a count in each period.
+        assert_eq!(over_missing(0, 6), (0, 1.0));
+        assert_eq!(over_missing(0, -7).0, -7);
+    }
+
+    #[test]
+    fn steps_are_uneven_beyond_a_tenth_of_the_period_and_the_digits_of_t() {
+        let uneven_from = |period: f64, lengths: &[f64]| {
+            let mut steps = Steps::default();
+            for length in lengths {
+                steps.add(length * PERIOD, [0; 2]);
+            }
+            steps.are_uneven(period * PERIOD)
+        };
+        let are_uneven = |lengths: &[f64]| uneven_from(1.0, lengths);
+        assert!(!are_uneven(&[1.0; 20]));
+        assert!(!are_uneven(&[1.0, 1.09, 0.91, 1.003]));
+        assert!(are_uneven(&[1.0, 1.0, 1.11, 1.003]));
+        assert!(are_uneven(&[1.0, 1.0, 0.89, 1.003]));
+        // Rows 1.1 ms apart, whose times are rounded to a quarter of a millisecond.
+        assert!(!uneven_from(1.1, &[1.0, 1.0, 1.25, 1.0, 1.25]));
+        assert!(uneven_from(1.1, &[1.0, 1.0, 1.25, 1.0, 1.5]));
+    }
+}
