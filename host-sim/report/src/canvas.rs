@@ -206,8 +206,46 @@ fn legend_places(keys: &[Key], left: f64) -> impl Iterator<Item = (f64, usize)> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// Values of the attributes of each element of this name and colour, px.
+    fn elements(svg: &str, name: &str, colour: RGBColor, attributes: &[&str]) -> Vec<Vec<String>> {
+        let hex = format!("\"#{:02X}{:02X}{:02X}\"", colour.0, colour.1, colour.2);
+        let begin = format!("<{name}");
+        let tags = svg
+            .split(&begin)
+            .skip(1)
+            .filter_map(|rest| rest.split('>').next());
+        let of = |tag: &str| -> Vec<String> {
+            let value = |name: &&str| {
+                let from = tag.split(&format!(" {name}=\"")).nth(1).expect(name);
+                from.split('"').next().unwrap_or_default().to_owned()
+            };
+            attributes.iter().map(value).collect()
+        };
+        tags.filter(|tag| tag.contains(&hex)).map(of).collect()
+    }
+
+    /// Left end, top, width and height of each rectangle of a colour, px.
+    pub(crate) fn rectangles(svg: &str, colour: RGBColor) -> Vec<[f64; 4]> {
+        let found = elements(svg, "rect", colour, &["x", "y", "width", "height"]);
+        let number = |text: &String| text.parse::<f64>().expect("a number") / FINE;
+        let of = |values: Vec<String>| [0, 1, 2, 3].map(|n| number(&values[n]));
+        found.into_iter().map(of).collect()
+    }
+
+    /// Points of each polyline of a colour, px.
+    pub(crate) fn polylines(svg: &str, colour: RGBColor) -> Vec<Vec<(f64, f64)>> {
+        let point = |text: &str| {
+            let (x, y) = text.split_once(',').expect("a point");
+            let [x, y] = [x, y].map(|text| text.parse::<f64>().expect("a number") / FINE);
+            (x, y)
+        };
+        let found = elements(svg, "polyline", colour, &["points"]);
+        let of = |values: Vec<String>| values[0].split_whitespace().map(point).collect();
+        found.into_iter().map(of).collect()
+    }
 
     #[test]
     fn figure_has_its_size_its_title_and_escaped_text() {

@@ -226,3 +226,98 @@ fn in_words(closed: &ClosedLoop) -> Option<String> {
         format!("RMS parasitic force in closed loop, scene {scene}, plant {plant}: {clauses}.")
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use experiments::compare::Cost;
+    use experiments::transparency::{Fingertip, LoopCase, Parasitic, Signals};
+    use simulation::device::Device;
+
+    /// A run with this RMS parasitic force, mN, and share of time below the threshold.
+    pub(super) fn run(controlled_by: &'static str, rms_mn: f64, below: f64) -> Run {
+        Run {
+            controlled_by,
+            parasitic: Parasitic {
+                parasitic_mn_rms: Some(rms_mn),
+                below_threshold: Some(below),
+                ..Parasitic::default()
+            },
+            velocity: None,
+            stopped: None,
+            attribution: None,
+            signals: Some(Signals::default()),
+        }
+    }
+
+    pub(super) fn outcome(scene: SceneKind, rate_hz: f64, runs: Vec<Run>) -> Outcome {
+        Outcome {
+            case: LoopCase {
+                scene,
+                rate_hz,
+                plant: PlantKind::Friction,
+                seed: 1,
+                seconds: 1.0,
+                keep: true,
+                attribute: false,
+            },
+            fingertip: Fingertip::new(&Device::default()),
+            runs,
+            rows: Vec::new(),
+            cost: Cost::default(),
+        }
+    }
+
+    fn runs(rms_mn: f64) -> Vec<Run> {
+        vec![
+            run("finite-difference", 3.0 * rms_mn, 0.25),
+            run("kalman-triple", rms_mn, 0.75),
+            run("kalman-triple-steady", 2.0 * rms_mn, 0.5),
+            run(REFERENCE, 0.5 * rms_mn, 0.875),
+        ]
+    }
+
+    fn closed(rates_hz: &[f64]) -> ClosedLoop {
+        let outcomes = rates_hz
+            .iter()
+            .map(|&hz| outcome(SceneKind::FreeAir, hz, runs(1e4 / hz)));
+        ClosedLoop {
+            outcomes: outcomes.collect(),
+            ..ClosedLoop::default()
+        }
+    }
+
+    #[test]
+    fn best_estimator_is_named_and_the_reference_does_not_compete() {
+        let said = in_words(&closed(&[2000.0])).unwrap();
+        assert_eq!(
+            said,
+            "RMS parasitic force in closed loop, scene free-air, plant with friction: at 2 kHz \
+             5.00\u{a0}mN with kalman-triple, below the threshold of a fingertip 75\u{a0}% of the time \
+             (finite difference: 15.0\u{a0}mN, reference encoder: 2.50\u{a0}mN)."
+        );
+        assert_eq!(in_words(&ClosedLoop::default()), None);
+    }
+
+    #[test]
+    fn figures_have_the_lowest_and_the_highest_rate_and_one_form_of_a_filter() {
+        let closed = closed(&[2000.0, 5000.0, 1000.0, 10_000.0]);
+        let rates: Vec<_> = closed
+            .of("free-air")
+            .iter()
+            .map(|o| o.case.rate_hz)
+            .collect();
+        assert_eq!(rates, [1000.0, 10_000.0]);
+        let drawn = ["finite-difference", "kalman-triple", REFERENCE];
+        assert_eq!(closed.drawn_sources(), drawn);
+        // A steady filter without the full one has a curve.
+        let alone = runs(1.0)
+            .into_iter()
+            .filter(|run| run.controlled_by != "kalman-triple");
+        let closed = ClosedLoop {
+            outcomes: vec![outcome(SceneKind::FreeAir, 1e3, alone.collect())],
+            ..ClosedLoop::default()
+        };
+        assert!(closed.drawn_sources().contains(&"kalman-triple-steady"));
+    }
+}

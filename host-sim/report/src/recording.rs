@@ -228,6 +228,72 @@ mod tests {
     }
 
     #[test]
+    fn each_curve_has_its_own_column_in_its_unit() {
+        let text = "t,counts_large,counts_small,current,current_small,torque\n\
+            0,10,20,0.5,-0.25,0.01\n0.001,11,25,0.75,0.125,-0.02\n";
+        let options = ReadOptions::default();
+        let recording = Recording::parse_with_board(text.as_bytes(), "r", &options).unwrap();
+        let panels = panels(&view(&recording));
+        let found: Vec<_> = (panels.iter())
+            .map(|panel| {
+                let curves = panel.curves.iter().map(|curve| curve.values[1]);
+                (panel.unit, curves.collect::<Vec<_>>())
+            })
+            .collect();
+        let tau = std::f64::consts::TAU;
+        let expected = [
+            // Of 4096 and of 20 000 counts a turn.
+            ("angle, rad", vec![tau / 4096.0, 5.0 * tau / 20_000.0]),
+            ("current, A", vec![0.75, 0.125]),
+            ("torque, mN\u{b7}m", vec![-20.0]),
+        ];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((unit, found), (wanted, values)) in found.iter().zip(&expected) {
+            assert_eq!((unit, found.len()), (wanted, values.len()));
+            assert!(
+                found.iter().zip(values).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{found:?}"
+            );
+        }
+    }
+
+    /// The axis of velocities leaves out the jumps of a finite difference, and that of errors has both edges of the
+    /// interval.
+    #[test]
+    fn axis_has_the_band_and_the_curves_but_for_finite_difference() {
+        let text = "t,counts_large,true_omega\n0,0,1\n0.001,0,1\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let estimate = |estimator, velocity| Estimate {
+            estimator,
+            velocity: vec![velocity; 2],
+            deviation: None,
+            damping_ratio: None,
+        };
+        let estimates = [estimate("finite-difference", 50.0), estimate("pll", 1.25)];
+        let view = RecordingView {
+            estimates: &estimates,
+            ..view(&recording)
+        };
+        let panels = panels(&view);
+        let [low, high] = panel::range(&panels[1], &view);
+        assert!(low < 1.0 && high > 1.25 && high < 1.5, "{low} {high}");
+        let tolerance = view.interval.tolerance(1.0);
+        assert!(tolerance > 0.25);
+        let [low, high] = panel::range(&panels[2], &view);
+        assert!(
+            (low + high).abs() < 1e-12 && high > 1.5 * tolerance,
+            "{low} {high}"
+        );
+        // A finite difference alone has an axis.
+        let view = RecordingView {
+            estimates: &estimates[..1],
+            ..view
+        };
+        let panels = super::panels(&view);
+        assert!(panel::range(&panels[1], &view)[1] > 50.0);
+    }
+
+    #[test]
     fn missing_signals_have_no_panel() {
         let text = "t,counts_large\n0,0\n0.001,1\n";
         let recording = Recording::parse(text.as_bytes(), "r").unwrap();

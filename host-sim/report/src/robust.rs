@@ -188,6 +188,40 @@ impl Panel<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::canvas::tests::rectangles;
+
+    /// 7 of 10 runs are stable, 2 stopped, 1 violated.
+    #[test]
+    fn bars_have_the_shares_of_the_verdicts_and_reach_over_90_percent() {
+        let spread = Spread {
+            low: 1.0,
+            median: 3.0,
+            high: 10.0,
+            largest: 30.0,
+        };
+        let scene = SceneSummary {
+            scene: "wall".into(),
+            oscillation_limit_nm: 1e-3,
+            counts: [7, 2, 1],
+            handle_rad_s: spread,
+            large_rad_s: spread,
+            felt_nm: spread,
+            parasitic_n: spread,
+            oscillation_nm: None,
+        };
+        let svg = chart(&[scene]).unwrap().0;
+        let widths = VERDICTS.map(|(colour, _)| rectangles(&svg, colour)[0][2]);
+        let whole: f64 = widths.iter().sum();
+        for (width, share) in widths.iter().zip([0.7, 0.2, 0.1]) {
+            assert!((width / whole - share).abs() < 0.01, "{widths:?}");
+        }
+        // The speed of the handle is the first panel, of three decades from 0.1 rad/s.
+        let [left, _, width, _] = rectangles(&svg, SPREAD)[0];
+        let share = (WIDTH - LEFT - 20.0 + GAP) / (PANELS.len() + 1) as f64;
+        let decade = (share - GAP) / 3.0;
+        assert!((left - (LEFT + share + decade)).abs() < 0.5, "{left}");
+        assert!((width - decade).abs() < 0.5, "{width} {decade}");
+    }
 
     #[test]
     fn torques_lie_on_axes_in_millinewtonmetres() {

@@ -210,6 +210,21 @@ mod tests {
     }
 
     #[test]
+    fn largest_share_below_the_threshold_is_best_among_those_that_compete() {
+        use experiments::transparency::Parasitic;
+        let mut fields = Parasitic::FIELDS.iter();
+        let field = fields.find(|field| field.better == Better::Larger).unwrap();
+        let is_best = |value, competes| {
+            let all = [0.25, 0.75].into_iter();
+            let cell = score_cell(field, Some(value), all, competes).into_string();
+            assert!(cell.contains(&share(value)), "{cell}");
+            cell.contains("best")
+        };
+        assert_eq!([is_best(0.25, true), is_best(0.75, true)], [false, true]);
+        assert!(!is_best(0.75, false));
+    }
+
+    #[test]
     fn single_or_equal_values_have_no_best() {
         assert!(!table(&[("a", delay(0.5))]).contains("best"));
         assert!(!table(&[("a", delay(0.5)), ("b", delay(0.5))]).contains("best"));

@@ -120,6 +120,30 @@ mod tests {
     }
 
     #[test]
+    fn marks_have_the_damping_across_and_the_stiffness_upwards() {
+        let rows = [row(256, 1e3, 1e-3, 0.5), row(256, 1e3, 4e-3, 2.0)];
+        let palette = Palette::of(["pll"].into_iter());
+        let colour = palette.style("pll").colour;
+        let svg = chart(&rows.each_ref().map(|row| row), 256, &palette)
+            .unwrap()
+            .0;
+        let marks = crate::canvas::tests::rectangles(&svg, colour);
+        let width = WIDTH - LEFT - 14.0;
+        for part in [0.25, 1.0] {
+            // The axes end 6 % beyond the largest value. A mark may have stripes.
+            let at = [
+                LEFT + width * part / 1.06,
+                TOP + PANEL - PANEL * part / 1.06,
+            ];
+            let is_mark = |mark: &&[f64; 4]| (mark[1] + 0.5 * mark[3] - at[1]).abs() < 0.5;
+            let of_mark = marks.iter().filter(is_mark);
+            let left = of_mark.clone().fold(WIDTH, |x, mark| x.min(mark[0]));
+            let right = of_mark.fold(0.0_f64, |x, mark| x.max(mark[0] + mark[2]));
+            assert!((0.5 * (left + right) - at[0]).abs() < 0.5, "{marks:?}");
+        }
+    }
+
+    #[test]
     fn each_encoder_has_a_figure_and_each_rate_a_panel() {
         let mut rows = Vec::new();
         for (lines, rate_hz) in [(256, 1e3), (256, 1e4), (1024, 1e3)] {

@@ -191,6 +191,74 @@ mod tests {
     use super::*;
     use haptic_control::Margins;
 
+    /// An open loop of a gain of 10 and of 1, whose phase falls through half a turn.
+    #[test]
+    fn curves_have_gain_in_decibels_and_a_continuous_phase_and_the_circle_is_around_minus_1() {
+        use crate::canvas::tests::polylines;
+        let device = haptic_control::DualStage::DEFAULT;
+        let poles = haptic_control::LoopPoles::DEFAULT;
+        let mut design = Design::new(&device, 1000.0, poles).unwrap();
+        design.open_loop.truncate(3);
+        let values = [
+            (10.0, 10.0, -150.0_f64),
+            (100.0, 1.0, -210.0),
+            (400.0, 0.1, -300.0),
+        ];
+        for (point, (hz, gain, degrees)) in design.open_loop.iter_mut().zip(values) {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            (point.0, point.1.re, point.1.im) = (hz, gain * cos, gain * sin);
+        }
+        let design = Design {
+            margins: Margins {
+                modulus: 0.5,
+                gain: 3.0,
+                cos_phase: 0.95,
+                crossover_hz: 30.0,
+                delay_s: 0.0025,
+            },
+            ..design
+        };
+        let svg = drawn(&[design]).unwrap().0;
+        let curves = polylines(&svg, COLOURS[0]);
+        // The last two are gain and phase, on frames of 164 px for 100 dB and 270 degrees.
+        let [.., gain, phase] = &curves[..] else {
+            panic!("{curves:?}");
+        };
+        let falls = |curve: &[(f64, f64)], px: f64, of: &[f64]| {
+            for (pair, part) in curve.windows(2).zip(of) {
+                assert!((pair[1].1 - pair[0].1 - px * part).abs() < 0.5, "{curve:?}");
+            }
+        };
+        falls(gain, 164.0 / 100.0, &[20.0, 20.0]);
+        falls(phase, 164.0 / 270.0, &[60.0, 90.0]);
+        // -1 lies at 1.2 of the 3.2 units of the frame.
+        let band = format!("#{:02X}{:02X}{:02X}", BAND.0, BAND.1, BAND.2);
+        let circle = svg
+            .split("<polygon ")
+            .skip(1)
+            .find(|rest| rest.contains(&band))
+            .unwrap();
+        let points = circle
+            .split("points=\"")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap();
+        let xs = points.split_whitespace().map(|point| {
+            let x = point.split(',').next().unwrap();
+            x.parse::<f64>().unwrap() / 4.0
+        });
+        let (low, high) = xs.fold((f64::INFINITY, 0.0_f64), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        assert!(
+            (0.5 * (low + high) - (LEFT + 1.2 / 3.2 * SIDE)).abs() < 1.0,
+            "{low} {high}"
+        );
+        assert!((high - low - SIDE / 3.2).abs() < 1.0, "{low} {high}");
+    }
+
     #[test]
     fn table_has_the_delays_in_milliseconds() {
         let design = Design {

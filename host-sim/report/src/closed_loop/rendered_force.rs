@@ -179,3 +179,61 @@ fn panel<'a>(
         ],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{outcome, run};
+    use super::*;
+    use haptic_control::SceneKind;
+
+    #[test]
+    fn runs_are_those_of_finite_difference_the_best_other_one_and_the_reference() {
+        let runs = vec![
+            run("pll", 9.0, 0.5),
+            run("low-pass", 7.0, 0.5),
+            run("finite-difference", 5.0, 0.5),
+            run(REFERENCE, 1.0, 0.5),
+        ];
+        let outcome = outcome(SceneKind::Wall, 1e3, runs);
+        let names: Vec<_> = chosen(&outcome)
+            .iter()
+            .map(|run| run.controlled_by)
+            .collect();
+        assert_eq!(names, ["finite-difference", "low-pass", REFERENCE]);
+    }
+
+    /// 2 s at 1 kHz: a small force that rises slowly, and a push from 1.2 to 1.3 s.
+    #[test]
+    fn window_has_the_widest_range_of_the_command() {
+        let force = |k: i32| {
+            if (1200..1300).contains(&k) {
+                -300.0
+            } else {
+                0.01 * k as f32
+            }
+        };
+        let signals = Signals {
+            wanted_mn: (0..2000).map(force).collect(),
+            ..Signals::default()
+        };
+        let at_s = busiest(&signals, 1e3, 0.4).unwrap();
+        assert!((0.8..1.3).contains(&at_s), "{at_s}");
+        // Shorter than the window.
+        assert_eq!(busiest(&signals, 1e3, 2.0), None);
+        let run = run("pll", 1.0, 0.5);
+        let signals = Signals {
+            felt_mn: signals.wanted_mn.iter().map(|mn| mn + 1.0).collect(),
+            ..signals
+        };
+        let palette = Palette::of(["pll"].into_iter());
+        let panel = panel(&run, &signals, 1100..1301, 1e3, 10.0, &palette);
+        let [wanted, felt] = &panel.curves[..] else {
+            panic!("two curves");
+        };
+        assert_eq!((wanted.points.len(), wanted.points[0]), (201, (0.0, 11.0)));
+        assert_eq!(
+            (wanted.points[150], felt.points[150]),
+            ((150.0, -300.0), (150.0, -299.0))
+        );
+    }
+}

@@ -81,3 +81,31 @@ fn density(signals: &Signals, rate_hz: f64) -> Option<Vec<(f64, f64)>> {
     let density = Welch::new(rate_hz).density(&parasitic)?;
     Some(average(density.bin_hz, &density.power_per_hz))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A parasitic force of 120 Hz beside a commanded one of 40 Hz.
+    #[test]
+    fn density_is_that_of_the_force_beside_the_command() {
+        let sine = |hz: f64, k: u32| (8.0 * (TAU * hz * f64::from(k) / 1e3).sin()) as f32;
+        let signals = Signals {
+            wanted_mn: (0..4000).map(|k| sine(40.0, k)).collect(),
+            felt_mn: (0..4000).map(|k| sine(40.0, k) + sine(120.0, k)).collect(),
+            handle_rad_s: Vec::new(),
+        };
+        let points = density(&signals, 1e3).unwrap();
+        let near = |hz: f64| {
+            let near = points.iter().filter(|(at, _)| (at / hz - 1.0).abs() < 0.1);
+            near.map(|(_, density)| *density).fold(0.0, f64::max)
+        };
+        assert!(
+            near(40.0) < 1e-3 * near(120.0),
+            "{} {}",
+            near(40.0),
+            near(120.0)
+        );
+    }
+}

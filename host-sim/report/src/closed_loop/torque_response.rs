@@ -159,6 +159,30 @@ mod tests {
     use super::*;
 
     #[test]
+    fn gain_is_drawn_in_decibels_for_the_lowest_and_the_highest_rate() {
+        let [(_, gain, ..), (_, phase, ..), (_, coherence, ..)] = SHOWN;
+        let response = Response {
+            hz: 100.0,
+            gain: 10.0,
+            phase_deg: -45.0,
+            coherence: 0.9,
+        };
+        let shown = [gain, phase, coherence].map(|of| of(&response));
+        assert_eq!(shown, [20.0, -45.0, 0.9]);
+        let swept = |rate_hz| Swept {
+            rate_hz,
+            plant: PlantKind::Friction,
+            runs: Vec::new(),
+        };
+        let closed = ClosedLoop {
+            swept: [2e3, 5e3, 1e3, 1e4].map(swept).into(),
+            ..ClosedLoop::default()
+        };
+        let rates: Vec<_> = super::shown(&closed).iter().map(|s| s.rate_hz).collect();
+        assert_eq!(rates, [1e3, 1e4]);
+    }
+
+    #[test]
     fn cells_have_the_gain_farthest_from_1_in_decibels() {
         // Of the band from 50 to 500 Hz alone: 6 and -20 dB.
         let responses = [
