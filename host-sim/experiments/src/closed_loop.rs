@@ -338,3 +338,6 @@ pub fn estimator(
     let values = parameters.values(kind, &setup, PlantKind::Friction);
     kind.build(&setup, &values)
 }
+
+#[cfg(test)]
+mod tests;

@@ -214,3 +214,52 @@ pub fn trace(case: &Case, device: &Device, estimators: &[&Kind]) -> Result<Trace
         columns,
     )?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(scenario: ScenarioName, plant: PlantKind) -> Case {
+        Case {
+            scenario,
+            rate_hz: 1000.0,
+            plant,
+            seed: 1,
+            seconds: 1.0,
+            keep: false,
+        }
+    }
+
+    #[test]
+    fn estimators_know_whether_the_plant_has_friction() {
+        let device = Device::default();
+        let own = device.stages.large.coulomb_friction;
+        let assumed = |scenario, plant| {
+            let setup = setup_of(&case(scenario, plant), &device);
+            setup.stages.large.coulomb_friction
+        };
+        assert_eq!(assumed(ScenarioName::Step, PlantKind::Friction), own);
+        assert_eq!(assumed(ScenarioName::Step, PlantKind::Frictionless), 0.0);
+        // The plant of this scenario is linear, whatever the device.
+        assert_eq!(assumed(ScenarioName::Stochastic, PlantKind::Friction), 0.0);
+    }
+
+    #[test]
+    fn damping_has_a_value_each_tenth_of_a_second() {
+        let settings = Settings {
+            device: Device::default(),
+            estimators: vec![Kind::named("adaptive").unwrap()],
+            parameters: Parameters::default(),
+            wanted: Wanted::NONE,
+        };
+        let case = case(ScenarioName::Heating, PlantKind::Friction);
+        let outcomes = compare(&[case], &settings, &|| ()).unwrap();
+        let damping = outcomes[0].damping.as_ref().unwrap();
+        assert_eq!(damping.truth.len(), 10);
+        assert_eq!(damping.learned[0].0, "adaptive");
+        assert_eq!(damping.learned[0].1.len(), 10);
+        // It falls from that of the device on.
+        assert!((damping.truth[0] / settings.device.stages.damping - 1.0).abs() < 1e-3);
+        assert!(damping.truth.is_sorted_by(|a, b| a > b), "{damping:?}");
+    }
+}

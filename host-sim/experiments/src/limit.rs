@@ -195,3 +195,37 @@ fn run(
     }
     Ok(rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use catalogue::parameters::{Parameters, PlantKind};
+    use simulation::device::Device;
+
+    #[test]
+    fn errors_are_over_the_limit_of_the_same_signals() {
+        let names = ["low-pass", "m-over-t"];
+        let settings = Settings {
+            device: Device::default(),
+            estimators: names.map(|name| Kind::named(name).unwrap()).to_vec(),
+            parameters: Parameters::default(),
+            wanted: Wanted::NONE,
+        };
+        let case = Case {
+            scenario: ScenarioName::Step,
+            rate_hz: 1000.0,
+            plant: PlantKind::Friction,
+            seed: 1,
+            seconds: 0.4,
+            keep: false,
+        };
+        let rows = limit(&[case], &settings, 50, &|| ()).unwrap();
+        let found: Vec<_> = rows.iter().map(|row| row.estimator).collect();
+        assert_eq!(found, ["limit", "limit-edge", "low-pass", "m-over-t"]);
+        assert_ne!(rows[0].rms_rad_s, rows[1].rms_rad_s);
+        // The low-pass reads counts, M/T edges.
+        for (row, limit) in rows.iter().zip([0, 1, 0, 1]) {
+            assert_eq!(row.over_limit, row.rms_rad_s / rows[limit].rms_rad_s);
+        }
+    }
+}

@@ -216,6 +216,22 @@ pub fn csv(
 mod tests {
     use super::*;
 
+    /// More rows than one thread formats.
+    #[test]
+    fn each_row_of_a_long_csv_has_its_own_values() {
+        let rows = 2 * FORMATTED + 3;
+        let t: Vec<f64> = (0..rows).map(|k| k as f64).collect();
+        let velocity: Vec<f32> = (0..rows).map(|k| k as f32 + 0.5).collect();
+        let reference: Vec<f64> = (0..rows).map(|k| -(k as f64)).collect();
+        let mut text = Vec::new();
+        csv(&mut text, &t, &[&velocity], &[&reference]).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        assert_eq!(text.lines().count(), rows);
+        for (k, line) in text.lines().enumerate().skip(1) {
+            assert_eq!(line, format!("{k},{k}.5,-{k}.000000"));
+        }
+    }
+
     #[test]
     fn estimator_without_its_column_is_left_out_and_reported() {
         let text = "t,counts_large,true_omega\n0,0,0\n0.001,1,1.5\n0.002,2,1.5\n";

@@ -227,11 +227,11 @@ impl Experiment {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::judge::Verdict;
     use super::*;
 
-    pub(super) fn settings(scenes: &[&str], devices: u64) -> Settings {
+    pub(crate) fn settings(scenes: &[&str], devices: u64) -> Settings {
         let device = Device::default();
         let kind = Kind::named("kalman-triple-steady").unwrap();
         Settings {
@@ -273,6 +273,56 @@ mod tests {
             assert_eq!(row.device, "nominal");
             assert_eq!((row.verdict, row.stop), (Verdict::Stable, None), "{scene}");
         }
+    }
+
+    fn row_of(settings: &Settings, scene: SceneKind, corner: &str) -> RobustRow {
+        let experiment = Experiment::new(settings).unwrap();
+        experiment.row((scene, corner.parse().unwrap())).unwrap()
+    }
+
+    /// A device that is off has the torque of its coupler and its friction, whatever the inertia of the handle,
+    /// here as large as that of a heavy knob.
+    #[test]
+    fn inertia_of_the_handle_is_no_parasitic_force() {
+        let mut settings = settings(&["off"], 0);
+        settings.device.stages.small.inertia = 1e-4;
+        let stages = settings.device.stages;
+        let row = row_of(&settings, SceneKind::Off, "nominal");
+        let speed = row.handle_rad_s + row.large_rad_s;
+        let most = stages.damping * speed + stages.small.coulomb_friction;
+        let parasitic = row.parasitic_n * 0.5 * settings.device.handle.diameter_m;
+        // What the acceleration changes within a tick.
+        assert!(parasitic < 1.1 * most, "{parasitic} {most}");
+        assert!(row.felt_nm > 1.5 * most, "{row:?} {most}");
+    }
+
+    #[test]
+    fn wanted_torque_is_no_parasitic_force() {
+        let row = row_of(&settings(&["wall"], 0), SceneKind::Wall, "nominal");
+        assert!(row.felt_n > 0.5, "the hand is in the wall: {row:?}");
+        assert!(row.parasitic_n < 0.5 * row.felt_n, "{row:?}");
+    }
+
+    /// A device without friction that is off: a wrong zero of its amplifier drives the large motor against the damping
+    /// of the coupler, `J w' = Kt i - b w` beside the motion of the hand.
+    #[test]
+    fn wrong_zero_of_an_amplifier_drives_its_motor() {
+        let mut settings = settings(&["off"], 0);
+        settings.device = settings.device.frictionless();
+        // So strong a motor that the hand matters less.
+        settings.device.stages.large.torque_constant *= 5.0;
+        let stages = settings.device.stages;
+        let driven = row_of(&settings, SceneKind::Off, "zeros-high");
+        let large = stages.large;
+        let current = 15.0 / 2047.0 * large.current_limit;
+        let rate = stages.damping / large.inertia;
+        let grown = 1.0 - (-rate * settings.seconds).exp();
+        let omega = large.torque_constant * current / stages.damping * grown;
+        // Without it the handle alone drives the large motor, and not beyond its own speed.
+        let dragged = driven.handle_rad_s * grown;
+        assert!(omega > 2.0 * dragged, "{omega} {dragged}");
+        let off = (driven.large_rad_s - omega).abs();
+        assert!(off < dragged, "{driven:?}: {omega} rad/s without the hand");
     }
 
     #[test]

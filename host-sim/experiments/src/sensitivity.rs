@@ -163,3 +163,45 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<Cell>, Failure> {
     }
     Ok(cells)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use catalogue::parameters::{Parameters, PlantKind};
+    use simulation::device::Device;
+    use simulation::scenario::ScenarioName;
+
+    #[test]
+    fn percentages_are_of_the_finite_difference_and_a_model_feels_its_constants() {
+        let kinds = ["finite-difference", "observer"].map(|name| Kind::named(name).unwrap());
+        let settings = Settings {
+            device: Device::default(),
+            estimators: kinds.to_vec(),
+            parameters: Parameters::default(),
+            wanted: Wanted::NONE,
+        };
+        let case = Case {
+            scenario: ScenarioName::Step,
+            rate_hz: 1000.0,
+            plant: PlantKind::Friction,
+            seed: 1,
+            seconds: 0.5,
+            keep: false,
+        };
+        let rows = sensitivity(&[case], &settings, &|| ()).unwrap();
+        let of = |kind: &Kind| -> Vec<_> {
+            let rows = rows.iter().filter(|row| row.estimator == kind.name);
+            rows.collect()
+        };
+        let [difference, observer] = kinds.map(of);
+        assert_eq!(difference.len(), 1 + ConstantError::at(&PARTS).len());
+        assert!(difference.iter().all(|row| row.rms_pct == 100.0));
+        let reference = difference[0].rms_rad_s;
+        let right = observer[0];
+        assert_eq!((right.constant, right.error), (None, 0.0));
+        for row in &observer[1..] {
+            assert!((row.rms_pct * reference / row.rms_rad_s - 100.0).abs() < 1e-9);
+            assert_ne!(row.rms_rad_s, right.rms_rad_s, "{row:?}");
+        }
+    }
+}

@@ -217,6 +217,72 @@ mod tests {
         .unwrap()
     }
 
+    fn boundary() -> (LoopSetup, Boundary) {
+        let fails = Some(Finding {
+            contact: Contact::Throw,
+            violation: Violation::Stopped,
+        });
+        let wall = |value, beyond| Bound { value, beyond };
+        let kind = |name| Kind::named(name).unwrap();
+        let case = LoopSetup {
+            large: kind("kalman-motor"),
+            handle: kind("pll"),
+            rate_hz: 2000.0,
+            lines: 256,
+            exact: false,
+        };
+        let walls = vec![
+            (0.0, wall(1.5, fails)),
+            (2e-3, wall(3.25, fails)),
+            (4e-3, wall(3.25, fails)),
+            (6e-3, wall(0.5, fails)),
+        ];
+        let viscous = wall(8e-3, None);
+        (case, Boundary { walls, viscous })
+    }
+
+    #[test]
+    fn stiffest_wall_is_that_with_the_smallest_damping() {
+        let (damping, wall) = boundary().1.stiffest().unwrap();
+        assert_eq!((damping, wall.value), (2e-3, 3.25));
+    }
+
+    #[test]
+    fn rows_have_stiffness_and_damping_in_their_columns() {
+        let (case, boundary) = boundary();
+        let rows = rows::rows(&[case], &[boundary], 7);
+        let of: Vec<_> = (rows.iter())
+            .map(|row| (row.bound, row.stiffness_nm_per_rad, row.damping_nms_per_rad))
+            .collect();
+        let expected = [
+            ("stiffness", 1.5, 0.0),
+            ("stiffness", 3.25, 2e-3),
+            ("stiffness", 3.25, 4e-3),
+            ("stiffness", 0.5, 6e-3),
+            ("damping", 0.0, 8e-3),
+        ];
+        assert_eq!(of, expected);
+        let [first, .., last] = &rows[..] else {
+            panic!("rows");
+        };
+        assert_eq!(
+            (first.estimator, first.handle_estimator),
+            ("kalman-motor", "pll")
+        );
+        assert_eq!((first.fault, first.touch), (Some("stopped"), Some("throw")));
+        assert!(!first.at_cap && last.at_cap && last.fault.is_none() && last.touch.is_none());
+    }
+
+    #[test]
+    fn table_has_the_damping_in_thousandths_and_a_bound_that_is_the_end_of_the_search() {
+        let (case, boundary) = boundary();
+        let text = table::table(&[case], &[boundary], 1000);
+        let line = text.lines().last().unwrap();
+        let cells: Vec<_> = line.split_whitespace().collect();
+        let expected = "kalman-motor 1.50 throw: stopped 3.25 2.00 >= 8.00 -";
+        assert_eq!(cells.join(" "), expected, "{text}");
+    }
+
     #[test]
     fn bound_passes_and_is_within_the_resolution() {
         for limit in [0.0101, 0.3, 7.0, 99.0] {

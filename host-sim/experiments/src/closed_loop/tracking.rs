@@ -59,4 +59,25 @@ mod tests {
         assert!((10.0..=15.0).contains(&fastest), "{fastest}");
         assert!(reversals > 60, "{reversals}");
     }
+
+    /// The hand has the velocity of the slip of scenario track at each tick, and its integral as its angle.
+    #[test]
+    fn hand_has_the_velocity_of_the_slip() {
+        let (period, seed) = (1e-3, 5);
+        let random = Xoshiro256PlusPlus::seed_from_u64(ScenarioName::Track.mix(seed));
+        let mut track = Track::new(random);
+        let mut tracking = Tracking::new(period, seed);
+        let (mut angle, mut before) = (0.0, 0.0);
+        for k in 0..2000 {
+            let Grip::Hand(motion) = tracking.grip(k) else {
+                panic!("a hand");
+            };
+            let omega = track.omega((k + 1) as f64 * period);
+            angle += 0.5 * (before + omega) * period;
+            before = omega;
+            let end = motion.at(period);
+            assert!((end.omega - omega).abs() < 1e-9, "{k}: {end:?} {omega}");
+            assert!((end.angle - angle).abs() < 1e-9, "{k}: {end:?} {angle}");
+        }
+    }
 }

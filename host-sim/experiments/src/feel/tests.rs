@@ -53,3 +53,24 @@ fn run_without_the_estimation_error_is_shared_by_the_estimators_of_a_scene() {
     assert_ne!(felt[0].without[0].1, felt[1].without[0].1);
     assert_ne!(felt[0].without[1].1, felt[2].without[1].1);
 }
+
+#[test]
+fn rows_and_table_have_both_estimators_and_both_shares() {
+    let settings = settings(&[]);
+    let case = case(SceneKind::FreeAir, "pll");
+    let mut felt = feel(&[case], &settings, &|| ()).unwrap();
+    let attribution = felt[0].attribution.as_mut().unwrap();
+    for part in &mut attribution.parts {
+        (part.share, part.tactile_share) = (Some(0.125), Some(0.375));
+    }
+    let rows = rows::causes(&felt, &settings);
+    assert_eq!(rows.len(), CAUSES);
+    for row in &rows {
+        let names = (row.of.controlled_by, row.of.handle_estimator);
+        assert_eq!(names, ("pll", "kalman-triple-steady"));
+    }
+    let text = table::table(&felt, &settings, 1000);
+    let line = text.lines().find(|line| line.contains("inertia")).unwrap();
+    let cells: Vec<_> = line.split_whitespace().collect();
+    assert_eq!((cells[2], cells[4]), ("12.5", "37.5"), "{text}");
+}

@@ -170,3 +170,53 @@ impl Without {
         self == Self::Everything || those.contains(&self)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Frictions, inertia and ripples of both motors, and the bandwidth of the amplifiers, as parts of those of
+    /// the default device.
+    fn parts(without: Without) -> [f64; 6] {
+        let values = |device: &Device| {
+            [
+                device.stages.large.coulomb_friction,
+                device.stages.small.coulomb_friction,
+                device.stages.small.inertia,
+                device.large_ripple.torque,
+                device.small_ripple.torque,
+                device.stages.amplifier_bandwidth.0,
+            ]
+        };
+        let device = Device::default();
+        let [all, left] = [values(&device), values(&without.of(&device))];
+        assert!(all.iter().all(|value| *value > 0.0));
+        std::array::from_fn(|n| left[n] / all[n])
+    }
+
+    #[test]
+    fn each_cause_is_removed_from_the_device_alone() {
+        let fast = 100e3 / Device::default().stages.amplifier_bandwidth.0;
+        let whole = [1.0; 6];
+        for (without, expected) in [
+            (Without::LargeFriction, [0.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+            (Without::SmallFriction, [1.0, 0.0, 1.0, 1.0, 1.0, 1.0]),
+            (Without::Inertia, [1.0, 1.0, 0.1, 1.0, 1.0, 1.0]),
+            (Without::Ripple, [1.0, 1.0, 1.0, 0.0, 0.0, 1.0]),
+            (Without::AmplifierLag, [1.0, 1.0, 1.0, 1.0, 1.0, fast]),
+            (Without::FrictionAndInertia, [1.0, 0.0, 0.1, 1.0, 1.0, 1.0]),
+            (Without::Everything, [0.0, 0.0, 0.1, 0.0, 0.0, fast]),
+            (Without::Dac, whole),
+            (Without::EstimationError, whole),
+            (Without::AllButLimits, whole),
+        ] {
+            let found = parts(without);
+            let is_near = |(a, b): (&f64, f64)| (a - b).abs() < 1e-12;
+            assert!(
+                found.iter().zip(expected).all(is_near),
+                "{}: {found:?}",
+                without.name()
+            );
+        }
+    }
+}

@@ -82,6 +82,26 @@ mod tests {
         (trace, BoardColumns::parse(text.as_bytes(), "r").unwrap())
     }
 
+    /// What a board has learned is that of the latest part that tells it.
+    #[test]
+    fn latest_learned_parameters_are_compared() {
+        let learned = |damping| {
+            let mut board = BoardColumns::default();
+            board.learned = Some(LearnedLine {
+                damping,
+                friction: 0.0,
+                torque_constant: 0.0,
+            });
+            board
+        };
+        let mut summary = BoardSummary::default();
+        for board in [learned(0.3), learned(-0.2), BoardColumns::default()] {
+            summary.learn(&board);
+        }
+        let lines = summary.lines(&Device::default());
+        assert!(lines[0].contains("-20.0 %"), "{lines:?}");
+    }
+
     #[test]
     fn share_of_good_estimates_is_that_of_all_parts_after_the_start() {
         let mut summary = BoardSummary::default();

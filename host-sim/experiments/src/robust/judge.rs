@@ -204,6 +204,22 @@ mod tests {
         amplitude * (TAU * hz * t).sin()
     }
 
+    /// The amplitude of a texture as an RMS, with the largest torque constant.
+    #[test]
+    fn vibration_of_a_scene_is_allowed_with_the_largest_torque_constant() {
+        let texture = crate::closed_loop::usual(
+            haptic_control::SceneKind::Texture,
+            &haptic_control::DualStage::DEFAULT,
+            10e3,
+        )
+        .unwrap();
+        let own = f64::from(texture.vibration().0) * 0.5_f64.sqrt();
+        assert!(own > 0.0);
+        let limit = oscillation_limit_nm(&texture);
+        assert!((limit - (1e-3 + 1.2 * own)).abs() < 1e-12, "{limit}");
+        assert_eq!(oscillation_limit_nm(&haptic_control::FreeAir.into()), 1e-3);
+    }
+
     #[test]
     fn motion_of_the_hand_alone_is_stable() {
         let judge = judged(2000, |_, t| Instant {

@@ -109,6 +109,37 @@ mod tests {
         }
     }
 
+    /// A run that is stopped in its fourth tick at 2 kHz, on a handle of 70 mm.
+    #[test]
+    fn row_has_the_peaks_before_and_after_the_stop_with_their_units() {
+        let settings = crate::robust::tests::settings(&["free-air"], 0);
+        let mut judge = Judge::new(&haptic_control::FreeAir.into(), settings.rate_hz, 6);
+        for (k, size) in [0.1, 0.2, 0.3, 1.0, 2.0, 0.5].into_iter().enumerate() {
+            judge.see(&crate::robust::judge::Instant {
+                handle_rad_s: 7.0 * size,
+                large_rad_s: 50.0 * size,
+                felt_nm: 0.04 * size,
+                rendered_nm: 0.03 * size,
+                wanted_nm: 0.01 * size,
+                stopped: k >= 3,
+            });
+        }
+        let (variation, _) = Subject::Drawn(3).variation(7, SceneKind::FreeAir);
+        let job = (SceneKind::FreeAir, Subject::Drawn(3));
+        let row = RobustRow::new(&settings, job, variation, &judge, Some(Stop::Jump));
+        assert_eq!((row.scene.as_str(), row.device.as_str()), ("free-air", "3"));
+        assert_eq!((row.verdict, row.reason), (Verdict::Stopped, None));
+        assert_eq!(row.stop.as_deref(), Some(Stop::Jump.as_str()));
+        assert_eq!(row.stop_s, Some(1.5e-3));
+        let before = [row.handle_rad_s, row.large_rad_s, row.felt_nm];
+        assert_eq!(before, [2.1, 15.0, 0.012]);
+        // 12 mN.m felt, of which 6 mN.m are not wanted, at 35 mm.
+        assert_eq!([row.felt_n, row.parasitic_n], [0.342_857, 0.171_429]);
+        assert_eq!(row.after_handle_rad_s, Some(14.0));
+        assert_eq!(row.after_felt_nm, Some(0.08));
+        assert_eq!(row.oscillation_nm, None);
+    }
+
     #[test]
     fn row_is_unchanged_after_writing_and_reading() {
         for i in 0..200 {

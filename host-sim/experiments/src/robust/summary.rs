@@ -289,6 +289,33 @@ mod tests {
     }
 
     #[test]
+    fn table_has_median_95_percent_and_largest_value_in_its_units() {
+        let spread = |unit: f64| Spread {
+            low: 0.5 * unit,
+            median: unit,
+            high: 2.0 * unit,
+            largest: 3.0 * unit,
+        };
+        let scene = SceneSummary {
+            scene: "wall".into(),
+            oscillation_limit_nm: 0.0015,
+            counts: [7, 2, 1],
+            handle_rad_s: spread(10.0),
+            large_rad_s: spread(99.0),
+            felt_nm: spread(0.02),
+            parasitic_n: spread(0.1),
+            oscillation_nm: Some(spread(1e-4)),
+        };
+        let settings = crate::robust::tests::settings(&["wall"], 0);
+        let text = table(&settings, &[scene], 1000);
+        let line = text.lines().find(|line| line.contains("wall")).unwrap();
+        let cells: Vec<_> = line.split_whitespace().collect();
+        let expected =
+            "wall 7 2 1 10.0 20.0 30.0 20.0 40.0 60.0 0.10 0.20 0.30 0.10 0.20 0.30 1.50";
+        assert_eq!(cells.join(" "), expected, "{text}");
+    }
+
+    #[test]
     fn quantiles_ignore_missing_values() {
         let spread = Spread::of((1..=100).rev().map(f64::from)).unwrap();
         assert_eq!(

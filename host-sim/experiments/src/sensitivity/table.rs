@@ -223,6 +223,38 @@ mod tests {
     }
 
     #[test]
+    fn each_wrong_constant_has_its_column_and_the_worst_share_is_of_all() {
+        let mut rows = vec![right("step", 10.0)];
+        let mut expected = vec!["low-pass".to_owned(), "10.00".into(), "10.00".into()];
+        for (k, wrong) in (1..).zip(ConstantError::extremes()) {
+            rows.push(SensitivityRow {
+                constant: Some(wrong.constant.as_str()),
+                error: wrong.error,
+                outside: 0.01 * f64::from(k),
+                ..right("step", 10.0 + f64::from(k))
+            });
+            expected.push(format!("{k}.00").replacen("", "1", usize::from(k < 10)));
+        }
+        // Half of the largest error has no column.
+        rows.push(SensitivityRow {
+            error: 0.5 * rows[1].error,
+            ..rows[1].clone()
+        });
+        let number = ConstantError::extremes().len();
+        assert!(number < 10);
+        let worst = [
+            format!("1{number}.00"),
+            "0.00".into(),
+            format!("{number}.00"),
+        ];
+        expected.extend(worst);
+        let text = table(&rows, 1000);
+        let line = text.lines().last().unwrap();
+        let cells: Vec<_> = line.split_whitespace().collect();
+        assert_eq!(cells, expected, "{text}");
+    }
+
+    #[test]
     fn the_worst_is_of_moving_scenarios_only() {
         let row = |scenario, constant, error, rms_pct| SensitivityRow {
             estimator: "pll",

@@ -261,6 +261,47 @@ mod tests {
         }
     }
 
+    /// A torque that has the commanded sine in each second period alone, with a lag of a quarter of its cycle.
+    #[test]
+    fn coherence_is_the_share_of_the_power_that_repeats() {
+        let device = Device::default();
+        let rig = SweepRig::new(&device, 1000.0);
+        let (number, amplitude) = rig.lines[3];
+        let of = |k: usize| {
+            let turn = (number * k) as f64 / rig.ticks as f64 - 0.25;
+            let there = if (k / rig.ticks).is_multiple_of(2) {
+                1.0
+            } else {
+                0.0
+            };
+            there * (amplitude * Complex::from_polar(1.0, TAU * turn)).re
+        };
+        let felt = (0..PERIODS * rig.ticks).map(|k| Complex::new(of(k), 0.0));
+        let response = rig.responses(felt.collect())[3];
+        assert!((response.hz - number as f64 / PERIOD_S).abs() < 1e-9);
+        // Half of the mean amplitude, and a quarter of the power of the half of the periods.
+        assert!((response.gain - 0.5).abs() < 1e-9, "{response:?}");
+        assert!((response.coherence - 0.5).abs() < 1e-9, "{response:?}");
+        assert!((response.phase_deg + 90.0).abs() < 1e-6, "{response:?}");
+    }
+
+    /// A torque that is two ticks late: at 450 Hz of 1 kHz by 324 degrees.
+    #[test]
+    fn phase_of_a_delay_falls_beyond_half_a_turn() {
+        let device = Device::default();
+        let rig = SweepRig::new(&device, 1000.0);
+        let wanted = rig.wanted();
+        let late = |k: usize| f64::from(wanted[(k + rig.ticks - 2) % rig.ticks]);
+        let felt = (0..PERIODS * rig.ticks).map(|k| Complex::new(late(k), 0.0));
+        for response in rig.responses(felt.collect()) {
+            let expected = -360.0 * response.hz * 2e-3;
+            assert!(
+                (response.phase_deg - expected).abs() < 0.1,
+                "{response:?}: {expected}"
+            );
+        }
+    }
+
     #[test]
     fn bandwidth_is_the_first_frequency_below_3_db() {
         let of = |gains: &[f64]| {
