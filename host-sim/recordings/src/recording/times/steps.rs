@@ -227,6 +227,7 @@ impl Steps {
 pub(crate) fn differs(step: f64, period: f64) -> f64 {
     (step - period).abs() / period
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;
