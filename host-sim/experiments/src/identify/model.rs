@@ -100,11 +100,12 @@ fn step(omega: f64, drive: f64, damping: f64, friction: f64, period_s: f64) -> f
         false => net * period_s,
     };
     let end = decay * omega + gained;
-    // A velocity that overflows has no zero to pass.
-    if end.is_nan() || end * omega >= 0.0 {
+    // A rotor at rest has no zero to pass, nor has a velocity that overflows to NaN.
+    let passes_zero = end * omega < 0.0;
+    if !passes_zero {
         return end;
     }
-    // The velocity passed zero; the rest of the period starts from rest.
+    // The rest of the period starts from rest.
     let stopped = -damping * omega / net;
     let until = match damping.abs() * period_s > 1e-9 {
         true => stopped.ln_1p() / damping,
@@ -131,6 +132,8 @@ mod tests {
         assert!((turned + 0.5e-3).abs() < 1e-9, "{turned}");
         // A coefficient without a meaning: e^800 is no number.
         assert!(step(1.0, -1e9, -8e5, 0.0, 1e-3).is_nan());
+        // e^700 times the drive overflows, from rest too.
+        assert_eq!(step(0.0, 1e9, -7e5, 0.0, 1e-3), f64::INFINITY);
         // Reversals with damping, against a solution in a hundred thousand steps.
         for (omega, period_s) in [(20.0, 10e-3), (20.0, 5e-3), (2.0, 1e-3), (-20.0, 5e-3)] {
             let (drive, damping, friction) = (-4000.0_f64.copysign(omega), 83.5, 352.0);
