@@ -26,7 +26,7 @@ mod response;
 mod sent;
 mod session;
 pub mod settings;
-mod starts;
+pub mod starts;
 mod strokes;
 mod supply;
 mod timed;

@@ -2,25 +2,29 @@
 
 use drivers::link::Frame;
 
+/// Whether the board has started again between two frames: both of its numbers, which wrap, go back.
+#[must_use]
+pub const fn is_start(last: &Frame, frame: &Frame) -> bool {
+    goes_back(last.seq, frame.seq) && goes_back(last.tick, frame.tick)
+}
+
+const fn goes_back(from: u32, to: u32) -> bool {
+    to.wrapping_sub(from).cast_signed() < 0
+}
+
 /// Counts the starts of a board.
 #[derive(Default)]
 pub(crate) struct Starts {
     /// Number of starts since the connection.
     pub(crate) number: u32,
-    /// Numbers of frame and tick of the latest frame.
-    last: Option<[u32; 2]>,
+    last: Option<Frame>,
 }
 
 impl Starts {
-    /// Takes a frame. The board has started again if both of its numbers go back.
+    /// Takes a frame.
     pub(crate) fn frame(&mut self, frame: &Frame) {
-        let now = [frame.seq, frame.tick];
-        let goes_back = |(from, to): (u32, u32)| to.wrapping_sub(from).cast_signed() < 0;
-        if let Some(last) = self.last.replace(now)
-            && last.into_iter().zip(now).all(goes_back)
-        {
-            self.number += 1;
-        }
+        let last = self.last.replace(*frame);
+        self.number += u32::from(last.is_some_and(|last| is_start(&last, frame)));
     }
 }
 

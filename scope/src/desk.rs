@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use drive::starts::is_start;
 use drivers::Command;
 use drivers::link::{Frame, Hello, Message};
 use haptic_control::{Mode, Request, Stop};
@@ -232,7 +233,7 @@ impl Desk {
             self.t = truth.t;
         }
         let is_hello_new = std::mem::take(&mut self.is_hello_new);
-        if self.last.is_some_and(|last| is_anew(&last, frame)) {
+        if self.last.is_some_and(|last| is_start(&last, frame)) {
             self.forget();
             self.bench.restarted();
             if let Some(hello) = self.hello.filter(|_| is_hello_new) {
@@ -300,12 +301,6 @@ impl Desk {
 /// Ticks of a second.
 fn hz(rate: f64) -> u32 {
     rate as u32
-}
-
-/// Whether the board has started again between two frames: both of its numbers go back.
-fn is_anew(last: &Frame, frame: &Frame) -> bool {
-    let goes_back = |from: u32, to: u32| to.wrapping_sub(from).cast_signed() < 0;
-    goes_back(last.seq, frame.seq) && goes_back(last.tick, frame.tick)
 }
 
 #[cfg(test)]
