@@ -32,6 +32,8 @@ pub(crate) struct Board {
     messages: VecDeque<Message>,
     /// Bytes that were read since a read has left nothing that had come.
     behind: usize,
+    /// Begin of the latest read.
+    read_at: Option<Instant>,
     asked: Questions,
     starts: Starts,
     /// Number of starts at the first change, which a later start loses.
@@ -64,6 +66,7 @@ impl Board {
             parser: Parser::default(),
             messages: VecDeque::new(),
             behind: 0,
+            read_at: None,
             asked: Questions::new(patience),
             starts: Starts::default(),
             changed: None,
@@ -142,6 +145,7 @@ impl Board {
                 return Ok(Some(message));
             }
             let mut bytes = [0; READ];
+            self.read_at = Some(Instant::now());
             let read = self.port.read(&mut bytes);
             let count = read.map_err(|error| self.lost(&error))?;
             self.behind = match count < READ {
@@ -187,9 +191,10 @@ impl Board {
 
     /// Whether a wait until `end` is over. After a standstill of this process what has come by then counts, unless the
     /// other end sends faster than it is read.
-    fn is_over(&self, end: Instant) -> bool {
+    pub(crate) fn is_over(&self, end: Instant) -> bool {
+        let has_looked = self.read_at.is_some_and(|at| at >= end);
         let has_read = self.behind == 0 && self.messages.is_empty();
-        Instant::now() >= end && (has_read || self.behind > MOST_BEHIND)
+        has_looked && (has_read || self.behind > MOST_BEHIND)
     }
 
     /// The identity of the board. Commands that were sent before have been processed by then.

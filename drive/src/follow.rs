@@ -36,7 +36,7 @@ pub(crate) fn follow(
         let patience = board.patience();
         let until = course.pace.next().min(course.heard + patience);
         let Some(message) = board.next(until)? else {
-            if course.heard.elapsed() >= patience {
+            if board.is_over(course.heard + patience) {
                 return Err(board.silent());
             }
             continue;

@@ -5,7 +5,9 @@ use std::thread::sleep;
 use drivers::link::LONGEST;
 
 use super::*;
+use crate::follow::follow;
 use crate::port::PipeEnd;
+use crate::session::Plan;
 use crate::watch::tests::FRAME;
 
 /// A board of little patience, and its end of the line, which has sent these messages, each for itself.
@@ -43,10 +45,41 @@ fn frame_that_comes_while_the_process_stands_still_ends_a_wait() {
 }
 
 #[test]
+fn frame_that_comes_behind_other_bytes_while_the_process_stands_still_ends_no_session() {
+    let (mut board, end) = sent(&[]);
+    board.patience = Duration::ZERO;
+    let mut buffer = [0; LONGEST];
+    let frame = Message::from(FRAME).encode(&mut buffer).unwrap().to_vec();
+    end.to.send(vec![0; READ]).unwrap();
+    end.to.send(frame).unwrap();
+    drop(end);
+    let answer = Answer {
+        hello: Hello::default(),
+        rejected: None,
+    };
+    let plan = Plan {
+        scene: None,
+        changes: Vec::new(),
+        seconds: None,
+        every: None,
+        recorder: None,
+        has_stdout: false,
+        keeps_alive: false,
+    };
+    let mut came = Vec::new();
+    let ended = follow(&mut board, &answer, plan, &mut |message| came.push(message));
+    assert_eq!(came, [FRAME.into()]);
+    let lost = ended.unwrap_err().to_string();
+    assert!(lost.contains("connection lost"), "{lost}");
+}
+
+#[test]
 fn wait_ends_where_nothing_comes_or_no_end() {
     let (mut board, _end) = sent(&[]);
     assert!(board.wait(10_000, |_| true, |_| String::new()).is_err());
     let now = Instant::now();
+    assert!(!board.is_over(now), "what has come since is not read");
+    assert_eq!(board.next(now).unwrap(), None);
     for (behind, ends) in [(0, true), (READ, false), (MOST_BEHIND + READ, true)] {
         board.behind = behind;
         assert_eq!(board.is_over(now), ends);
