@@ -24,7 +24,8 @@ const SERVER_ENDS: &str = "ended, as the server ends";
 const NO_OUTCOME: &str = "no answer of the board came to the order to store; store again";
 
 /// What is told of an order to store that waits while the board starts again, with the settings of its flash.
-const NOT_STORED: &str = "not stored: the board has started again";
+const NOT_STORED: &str = "not stored: the board has started again, and has lost what was changed; find the cause of the \
+                          reset, then change and store again";
 
 /// Settings and procedures of a board.
 #[derive(Default)]
@@ -154,7 +155,8 @@ impl Bench {
         }
     }
 
-    /// The bytes for the board that are due: of a procedure, or of what is done again. Without a page that commands, the procedure ends.
+    /// The bytes for the board that are due: those of a procedure, or those that are sent again. Without a page that
+    /// commands, the procedure ends.
     pub(crate) fn take_bytes(&mut self, is_abandoned: bool) -> Vec<u8> {
         let Some(guide) = self.guide.as_mut().filter(|guide| guide.runs()) else {
             let now = Instant::now();

@@ -358,8 +358,8 @@ mod tests {
         let said = "bring-up: the board has started again, cause watchdog";
         assert_eq!(told["guide"]["failure"], said);
         let told = start(&[Order::Store], Stop::None);
-        let said = "not stored: the board has started again";
-        assert_eq!(told["stored"]["words"], said);
+        let said = told["stored"]["words"].as_str().unwrap_or_default();
+        assert!(said.starts_with("not stored: the board has started again, and has lost"));
     }
 
     /// The thread of a procedure may not have seen the stop yet.
