@@ -24,9 +24,9 @@ const CHUNK: usize = 4096;
 const WAITING: usize = 256;
 /// Virtual time from which on the run is in real time. The emulator translates the image's code before.
 const STARTED: Duration = Duration::from_millis(100);
-/// Lag from which on it is not made up for: the board then runs in slow motion, instead of running too fast later, when
-/// its client would be too slow for it.
-const LAG: Duration = Duration::from_millis(20);
+/// Largest lag that is made up for. After a larger one the board does not run faster than real time, for which its client
+/// would be too slow.
+const MADE_UP: Duration = Duration::from_millis(20);
 /// Lag behind real time from which on it is told, s; then each time that it has doubled.
 pub(crate) const LAG_S: f64 = 0.05;
 
@@ -164,7 +164,7 @@ impl Served {
         } else {
             let late = real - virtual_time;
             let lag = (self.slow + late).as_secs_f64();
-            if late > LAG {
+            if late > MADE_UP {
                 *since += late;
                 self.slow += late;
             }
@@ -274,7 +274,7 @@ mod tests {
             look(ms);
         }
         // A slower computer takes longer.
-        assert!(begin.elapsed() >= Duration::from_millis(99) - LAG);
+        assert!(begin.elapsed() >= Duration::from_millis(99) - MADE_UP);
         assert!(live.pace.lag_s >= 0.299, "{}", live.pace.lag_s);
     }
 }
