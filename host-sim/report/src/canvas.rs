@@ -209,7 +209,7 @@ fn legend_places(keys: &[Key], left: f64) -> impl Iterator<Item = (f64, usize)> 
 pub(super) mod tests {
     use super::*;
 
-    /// Values of the attributes of each element of this name and colour, px.
+    /// Values of the attributes of each element of this name and colour.
     fn elements(svg: &str, name: &str, colour: RGBColor, attributes: &[&str]) -> Vec<Vec<String>> {
         let hex = format!("\"#{:02X}{:02X}{:02X}\"", colour.0, colour.1, colour.2);
         let begin = format!("<{name}");
@@ -235,14 +235,14 @@ pub(super) mod tests {
         found.into_iter().map(of).collect()
     }
 
-    /// Points of each polyline of a colour, px.
-    pub(crate) fn polylines(svg: &str, colour: RGBColor) -> Vec<Vec<(f64, f64)>> {
+    /// Points of each element of this name, `polyline` or `polygon`, and colour, px.
+    pub(crate) fn points(svg: &str, name: &str, colour: RGBColor) -> Vec<Vec<(f64, f64)>> {
         let point = |text: &str| {
             let (x, y) = text.split_once(',').expect("a point");
             let [x, y] = [x, y].map(|text| text.parse::<f64>().expect("a number") / FINE);
             (x, y)
         };
-        let found = elements(svg, "polyline", colour, &["points"]);
+        let found = elements(svg, name, colour, &["points"]);
         let of = |values: Vec<String>| values[0].split_whitespace().map(point).collect();
         found.into_iter().map(of).collect()
     }

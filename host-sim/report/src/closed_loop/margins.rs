@@ -194,7 +194,7 @@ mod tests {
     /// An open loop of a gain of 10 and of 1, whose phase falls through half a turn.
     #[test]
     fn curves_have_gain_in_decibels_and_a_continuous_phase_and_the_circle_is_around_minus_1() {
-        use crate::canvas::tests::polylines;
+        use crate::canvas::tests::points;
         let device = haptic_control::DualStage::DEFAULT;
         let poles = haptic_control::LoopPoles::DEFAULT;
         let mut design = Design::new(&device, 1000.0, poles).unwrap();
@@ -219,7 +219,7 @@ mod tests {
             ..design
         };
         let svg = drawn(&[design]).unwrap().0;
-        let curves = polylines(&svg, COLOURS[0]);
+        let curves = points(&svg, "polyline", COLOURS[0]);
         // The last two are gain and phase, on frames of 164 px for 100 dB and 270 degrees.
         let [.., gain, phase] = &curves[..] else {
             panic!("{curves:?}");
@@ -232,23 +232,8 @@ mod tests {
         falls(gain, 164.0 / 100.0, &[20.0, 20.0]);
         falls(phase, 164.0 / 270.0, &[60.0, 90.0]);
         // -1 lies at 1.2 of the 3.2 units of the frame.
-        let band = format!("#{:02X}{:02X}{:02X}", BAND.0, BAND.1, BAND.2);
-        let circle = svg
-            .split("<polygon ")
-            .skip(1)
-            .find(|rest| rest.contains(&band))
-            .unwrap();
-        let points = circle
-            .split("points=\"")
-            .nth(1)
-            .unwrap()
-            .split('"')
-            .next()
-            .unwrap();
-        let xs = points.split_whitespace().map(|point| {
-            let x = point.split(',').next().unwrap();
-            x.parse::<f64>().unwrap() / 4.0
-        });
+        let circles = points(&svg, "polygon", BAND);
+        let xs = circles[0].iter().map(|(x, _)| *x);
         let (low, high) = xs.fold((f64::INFINITY, 0.0_f64), |(low, high), x| {
             (low.min(x), high.max(x))
         });
