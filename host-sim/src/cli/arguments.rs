@@ -226,9 +226,9 @@ pub(super) fn scenarios(
     Ok(distinct(&scenarios, &[]))
 }
 
-/// Help text of a `--handle-estimator`, with the default.
-pub(super) fn handle_help() -> String {
-    format!("Estimator of the handle's velocity [default: {DEFAULT_ESTIMATOR}]")
+/// Help text of a `--handle-estimator` with this condition, which may be empty, and the default.
+pub(super) fn handle_help(condition: &str) -> String {
+    format!("Estimator of the handle's velocity{condition} [default: {DEFAULT_ESTIMATOR}]")
 }
 
 /// Help text of the `--seconds` of scenarios, with the default and the scenarios that have another one.

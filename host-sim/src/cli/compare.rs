@@ -69,7 +69,7 @@ pub(super) struct Compare {
     pub(super) closed_loop: bool,
     #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME", help = scenario_help())]
     pub(super) scenarios: Vec<String>,
-    #[arg(long, value_name = "NAME", requires = "closed_loop", help = handle_help() + ", only with --closed-loop")]
+    #[arg(long, value_name = "NAME", requires = "closed_loop", help = handle_help(", only with --closed-loop"))]
     pub(super) handle_estimator: Option<String>,
     #[arg(long = "rate", value_name = "HZ", help = rate_help())]
     pub(super) rates: Vec<f64>,

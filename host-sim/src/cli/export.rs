@@ -52,8 +52,7 @@ pub(super) struct Export {
 /// What the parameters of --c are for.
 #[derive(Debug, Args)]
 struct Design {
-    /// For C: control rate, 100 to 100000 Hz
-    #[arg(long, value_name = "HZ", default_value_t = 1e3, requires = "c")]
+    #[arg(long, value_name = "HZ", default_value_t = 1e3, requires = "c", help = rate_help())]
     rate: f64,
     /// For C: clock that stamps edges, Hz
     #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c")]
@@ -65,6 +64,12 @@ struct Design {
     /// For C: write the header to FILE; - is standard output
     #[arg(long, value_name = "FILE.h", default_value = "-", requires = "c")]
     out: PathBuf,
+}
+
+/// Help text of `--rate`.
+fn rate_help() -> String {
+    let [lowest, highest] = EVERY_HZ;
+    format!("For C: control rate, {lowest} to {highest} Hz")
 }
 
 pub(super) fn run(options: &Export) -> Result<(), Failure> {

@@ -45,7 +45,7 @@ pub(super) struct Feel {
     /// without edge time stamps]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    #[arg(long, value_name = "NAME", help = handle_help())]
+    #[arg(long, value_name = "NAME", help = handle_help(""))]
     pub(super) handle_estimator: Option<String>,
     /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
