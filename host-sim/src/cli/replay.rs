@@ -162,7 +162,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     if let Some(line) = interruptions {
         note(wrapped(&format!("{name}: {line}"), 2));
     }
-    if let Some(why) = without {
+    let without = without.or_else(|| unscored(&survey).filter(|_| !rows.is_empty()));
+    if let Some(why) = &without {
         note(format_args!("{name}: no scores: {why}"));
     }
     let against = match against {
@@ -185,7 +186,10 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         return Ok(());
     }
     let with_coupler = survey.columns.counts_small.is_some();
-    let table = replay::table(&rows, with_coupler, terminal_width());
+    let table = match without {
+        Some(_) => String::new(),
+        None => replay::table(&rows, with_coupler, terminal_width()),
+    };
     print_bytes(format!("{header}\n{table}").as_bytes())
 }
 
@@ -246,16 +250,14 @@ fn reference(
         }
         _ => {}
     }
-    let rate_hz = survey.columns.rate_hz;
-    let unscored = survey.rows as f64 <= (SKIP_S * rate_hz).round();
+    let unscored = unscored(survey);
     let in_columns = options.reference == Some(ReferenceUse::Columns);
     let recording = options.recording.read(log, device)?;
     match Reference::of(&recording, device.stages.large.counts_per_rev) {
-        // Nothing is left to score.
-        Ok(_) if unscored && options.json.is_none() && !in_columns => Ok(without(format!(
-            "{} rows at {rate_hz} Hz; scores begin after {SKIP_S} s",
-            survey.rows
-        ))),
+        Ok(_) if unscored.is_some() && options.json.is_none() && !in_columns => Ok(Referenced {
+            without: unscored,
+            ..Referenced::default()
+        }),
         Ok(reference) => Ok(Referenced {
             reference: Some(reference),
             without: None,
@@ -269,6 +271,13 @@ fn reference(
             "{called}: {why}; --reference off without --json writes velocities alone"
         ))),
     }
+}
+
+/// Why a recording has no scores that ends before they begin.
+fn unscored(survey: &Survey) -> Option<String> {
+    let (rows, rate_hz) = (survey.rows, survey.columns.rate_hz);
+    let is_short = rows as f64 <= (SKIP_S * rate_hz).round();
+    is_short.then(|| format!("{rows} rows at {rate_hz} Hz; scores begin after {SKIP_S} s"))
 }
 
 /// The second pass over a log.

@@ -176,9 +176,17 @@ fn log_that_ends_before_the_scores_begin_has_velocities_and_a_note() {
         "--out",
         "v.csv",
     ];
-    for (length, is_scored) in [(5000, false), (5200, true)] {
-        let text: String = rows(length).collect();
-        folder.write("short.csv", format!("t,counts_large\n{text}"));
+    for (length, truth, is_scored) in [
+        (5000, "", false),
+        (5200, "", true),
+        (5000, ",1.5", false),
+        (5200, ",1.5", true),
+    ] {
+        let text: String = rows(length)
+            .map(|row| row.replace('\n', &format!("{truth}\n")))
+            .collect();
+        let header = if truth.is_empty() { "" } else { ",true_omega" };
+        folder.write("short.csv", format!("t,counts_large{header}\n{text}"));
         let output = folder.run(&arguments);
         assert_eq!(output.status.code(), Some(0));
         let notes = words(&String::from_utf8(output.stderr).unwrap());
