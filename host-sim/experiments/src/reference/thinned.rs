@@ -10,15 +10,15 @@ use simulation::trace::Trace;
 
 use super::sections::Row;
 
-/// Rows from a change of the count to the next, in all but the fastest fifth of them, from which rows are left out.
+/// Rows from a change of the count to the next, but for the share [`FASTEST`] of them, from which on rows are left out.
 /// With fewer the likelihood is right, and it needs all rows of an impact between long rests.
 const MANY: usize = 64;
 
-/// Share of the fastest ones.
+/// Share of the intervals between two changes of the count that may be shorter: those of the fastest motion.
 const FASTEST: f64 = 0.2;
 
-/// The same number after rows are left out.
-const LEFT: usize = 8;
+/// Rows from a change of the count to the next that are kept.
+const KEPT: usize = 8;
 
 /// Every n-th row of `recording`, where its count changes so rarely that rows are left out.
 pub(super) fn thinned(recording: &Recording) -> Option<Recording> {
@@ -40,7 +40,7 @@ pub(super) fn thinned(recording: &Recording) -> Option<Recording> {
     })
 }
 
-/// Takes every row of `recording` for one that says nothing, but each n-th and those beside an edge.
+/// Takes every row of `recording` for one that says nothing, but for each n-th and those beside an edge.
 pub(super) fn pass_over(rows: &mut [Row], recording: &Recording) {
     let every = every(recording);
     let (t, trace) = (&recording.t, &recording.trace);
@@ -60,15 +60,16 @@ pub(super) fn pass_over(rows: &mut [Row], recording: &Recording) {
     }
 }
 
-/// Number of rows of which one is taken.
+/// Number n, if each n-th row is taken.
 fn every(recording: &Recording) -> usize {
     match gap(&recording.trace.counts_large) {
         0..MANY => 1,
-        gap => gap / LEFT,
+        gap => gap / KEPT,
     }
 }
 
-/// Least number of rows from a change of the count to the next but those of the fastest, 0 without two changes.
+/// Least number of rows from a change of the count to the next, but for the share [`FASTEST`] of them; 0 with fewer than
+/// two changes.
 fn gap(counts: &[u32]) -> usize {
     let changes: Vec<_> = (1..counts.len())
         .filter(|k| counts[*k] != counts[*k - 1])
