@@ -72,10 +72,13 @@ pub(super) fn events(
         last: None,
         period_s,
     };
+    // A range that begins with a bad count is from the first other one on: nothing is known of the motion between.
+    let first = range.clone().find(|k| rows[*k] != Row::Bad);
+    let first = counts[first.unwrap_or(range.start)];
     for k in range.clone() {
         let t = recording.t[k];
         if rows[k] == Row::Bad {
-            let origin = events.last.map_or(counts[k], |(_, origin)| origin);
+            let origin = events.last.map_or(first, |(_, origin)| origin);
             events.push(t, origin, Kind::Bad, false);
             continue;
         }

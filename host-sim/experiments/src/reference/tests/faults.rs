@@ -44,8 +44,12 @@ fn reference_of_a_recording_with_a_gap_has_the_error_of_its_standard_deviation()
 
 /// Rows at 1 kHz of a shaft that swings by 3 rad at 0.7 Hz, with 4096 counts/rev.
 fn swing() -> Recording {
+    swing_of(3000)
+}
+
+fn swing_of(rows: u32) -> Recording {
     let angular = TAU * 0.7;
-    let t: Vec<f64> = (0..3000).map(|k| f64::from(k) * 1e-3).collect();
+    let t: Vec<f64> = (0..rows).map(|k| f64::from(k) * 1e-3).collect();
     let scale = 4096.0 / TAU;
     let count = |t: &f64| (scale * 3.0 * (angular * t).sin()).floor() as i64 as u32;
     let velocity = |t: &f64| scale * 3.0 * angular * (angular * t).cos();
@@ -137,4 +141,16 @@ fn counts_that_are_no_motion_give_a_finite_reference_or_an_error() {
             Err(why) => assert!(why.starts_with("counts_large is no motion"), "{why}"),
         }
     }
+}
+
+/// The likelihood of this recording is computed over pieces that begin at the rows 0, 1000 and 2000.
+#[test]
+fn bad_count_at_the_begin_of_a_piece_is_no_noise() {
+    let mut recording = swing_of(4000);
+    for k in [1000, 2000] {
+        let count = &mut recording.trace.counts_large[k];
+        *count = count.wrapping_add(5000);
+    }
+    let noise = Noises::of(&recording).unwrap().sensor.sqrt();
+    assert!(noise < 0.1, "{noise} counts");
 }
