@@ -109,7 +109,7 @@ pub struct Ranked {
 /// One recording with what was computed from it.
 #[derive(Debug)]
 pub struct Outcome<'a> {
-    /// Its name.
+    /// Its path, for messages.
     pub name: &'a str,
     /// The recording.
     pub recording: &'a Recording,
@@ -319,7 +319,7 @@ fn on_log(kind: &Kind, outcome: &Outcome) -> Option<OnLog> {
     let rate_hz = outcome.recording.trace.rate_hz;
     let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
     Some(OnLog {
-        log: outcome.name.to_owned(),
+        log: outcome.file(),
         rms_rad_s: finite(row.score.rms_rad_s)?,
         rms_pct: finite(row.score.rms_pct)?,
         p99_rad_s: finite(row.score.p99_rad_s)?,

@@ -7,7 +7,7 @@ use clap::builder::RangedI64ValueParser;
 use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
-use crate::log::{Log, file_name, short_name};
+use crate::log::{Log, file_name};
 use crate::recording::{ReadOptions, Recording, Survey, current_option, stated_counts_per_rev};
 
 /// The parser of an option with counts per revolution.
@@ -234,7 +234,7 @@ impl Counted {
                 unstated = unstated.or(Some(log.name()));
                 continue;
             };
-            let name = short_name(log.path());
+            let name = log.name();
             match (known, first) {
                 (Some(_), _) if stated == *counts => {}
                 (Some(source), _) => lines.push(format!(

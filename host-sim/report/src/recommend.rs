@@ -55,7 +55,7 @@ pub fn recommend(
             estimates: &outcome.estimates,
             rate_hz: outcome.recording.trace.rate_hz,
         };
-        let title = format!("{}: the second with the largest errors", outcome.name);
+        let title = format!("{}: the second with the largest errors", outcome.file());
         figures.push(motion::velocity(&title, &signals, &drawn, &palette)?);
     }
     let intro = "Velocity estimators on recordings of one device, as shipped. The RMS error is in % of \

@@ -6,7 +6,7 @@ use clap::Args;
 
 use experiments::real::wanted::Wanted;
 use recordings::arguments::{ColumnOptions, DeviceFile};
-use recordings::log::short_name;
+use recordings::log::called;
 use recordings::recording::counts_per_rev_line;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
@@ -59,7 +59,7 @@ pub(super) fn run(options: &Coarsen) -> Result<(), Failure> {
     let mut text = counts_per_rev_line(options.counts_per_rev).into_bytes();
     text.extend(recording.to_csv());
     write_whole(&options.out, &text)?;
-    let name = short_name(&options.fine);
+    let name = called(&options.fine);
     for line in &recording.notes {
         note(format_args!("{name}: {line}"));
     }

@@ -6,7 +6,7 @@ use clap::Args;
 
 use experiments::real::wanted::rate;
 use recordings::arguments::counts_per_rev;
-use recordings::log::{Log, short_name};
+use recordings::log::Log;
 use recordings::recording::{Capture, counts_per_rev_line};
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
@@ -63,7 +63,7 @@ pub(super) fn run(options: &Decode) -> Result<(), Failure> {
     let mut text = stated.unwrap_or_default().into_bytes();
     text.extend(recording.to_csv());
     write_whole(&options.out, &text)?;
-    let name = short_name(&options.capture);
+    let name = log.name();
     for line in &recording.notes {
         note(format_args!("{name}: {line}"));
     }

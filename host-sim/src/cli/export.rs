@@ -21,7 +21,7 @@ use terminal::output::{note, write_whole};
 use super::arguments::{ParameterOptions, kinds};
 use super::replay::About;
 use experiments::uneven::{Chosen, Recorded};
-use recordings::log::{Log, short_name};
+use recordings::log::Log;
 
 #[derive(Debug, Args)]
 pub(super) struct Export {
@@ -140,8 +140,8 @@ fn identifier(text: &str) -> Result<String, String> {
 fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;
     let parameters = options.parameters.load()?;
-    let name = short_name(recording);
     let log = Log::open(recording)?;
+    let name = log.name();
     let Whole {
         recording,
         device,
@@ -151,7 +151,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
     let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
     let replayed = replay::replay(
         &recording,
-        &name,
+        name,
         &chosen.kinds,
         &device,
         &parameters,
@@ -166,7 +166,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
         mismatched_presets: &replayed.mismatched_presets,
     };
     stated.iter().for_each(note);
-    about.note(&name);
+    about.note(name);
     Ok(())
 }
 

@@ -69,7 +69,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     let (mut recordings, mut current_options) = (Vec::new(), Vec::new());
     let counts_are_known = !notes.is_empty() || options.read.encoder.counts_per_rev.is_some();
     for log in &logs {
-        let name = short_name(log.path());
+        let name = log.name().to_owned();
         let recording = options.read.read(log, &device)?;
         notes.extend(recording.notes.iter().map(|line| format!("{name}: {line}")));
         recordings.push((name, recording));
@@ -96,7 +96,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
             )));
         }
         let text = options.device.text()?;
-        let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<_> = logs.iter().map(|log| short_name(log.path())).collect();
         let given = options.known.is_some();
         let counts = device.stages.large.counts_per_rev;
         let names = names.join(", ");

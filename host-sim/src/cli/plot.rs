@@ -60,7 +60,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         names => kinds(names)?,
     };
     let parameters = options.parameters.load()?;
-    let name = short_name(&options.recording);
     let log = Log::open(&options.recording)?;
     let path = log.name();
     let Whole {
@@ -87,7 +86,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     }
     let replayed = replay::replay(
         &recording,
-        &name,
+        path,
         &chosen.kinds,
         &device,
         &parameters,
@@ -97,7 +96,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         refuse_left_out(path, &replayed.left_out)?;
     }
     let svg = report::recording(&RecordingView {
-        name: &name,
+        name: &short_name(&options.recording),
         recording: &recording,
         estimates: &replayed.estimates,
         counts_per_rev: [
@@ -117,7 +116,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     for line in &stated {
         note(line);
     }
-    about.note(&name);
+    about.note(path);
     if options.out.is_some() || is_stdout(out) {
         return Ok(());
     }

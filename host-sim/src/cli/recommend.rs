@@ -18,7 +18,7 @@ use terminal::wording::wrapped;
 use super::arguments::{ParameterOptions, open_logs};
 use super::page::{self, progress};
 use experiments::uneven::{Chosen, Recorded};
-use recordings::log::{Log, short_name};
+use recordings::log::Log;
 
 /// Default budget of the cheap estimator, instructions per update.
 const BUDGET: f64 = 100.0;
@@ -69,7 +69,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
     let read = |log: &Log| -> Result<(String, Recording), Failure> {
         let recording = options.recording.read(log, &device)?;
         recording.check_times(log.name())?;
-        Ok((short_name(log.path()), recording))
+        Ok((log.name().to_owned(), recording))
     };
     let logs: Vec<_> = logs.iter().map(read).collect::<Result<_, _>>()?;
     let settings = Settings {

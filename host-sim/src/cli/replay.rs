@@ -76,8 +76,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;
     let loaded = options.device.loaded()?;
     let parameters = options.parameters.load()?;
-    let name = short_name(&options.trace);
     let log = Log::open(&options.trace)?;
+    let name = log.name();
     let logs = std::slice::from_ref(&log);
     let counted = options.recording.counted(loaded, logs)?;
     let device = counted.device;
@@ -101,7 +101,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         _ => Against::Truth,
     };
     let (columns, rows) = (&survey.columns, survey.rows);
-    let mut run = Run::new(columns, rows, &name, &chosen.kinds, &device, &parameters)?;
+    let file = short_name(&options.trace);
+    let mut run = Run::new(columns, rows, &file, &chosen.kinds, &device, &parameters)?;
     if !options.estimators.is_empty() || run.estimates.is_empty() {
         refuse_left_out(log.name(), &run.left_out)?;
     }
@@ -145,7 +146,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     for line in &counted.lines {
         note(line);
     }
-    about.note(&name);
+    about.note(name);
     for line in passes.summary.lines(&device) {
         note(format_args!("{name}: {line}"));
     }

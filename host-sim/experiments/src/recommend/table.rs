@@ -1,11 +1,13 @@
 //! The ranking as text.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use catalogue::estimators::{DIFFERENCE, Kind};
+use recordings::log::short_name;
 use terminal::wording::wrapped;
 
-use super::{Ranked, Recommendation};
+use super::{Outcome, Ranked, Recommendation};
 use crate::table::layout::{Column, table as side_by_side};
 use crate::table::number;
 
@@ -63,10 +65,18 @@ pub fn table(recommendation: &Recommendation, all: bool, width: usize) -> String
     let outcomes = &recommendation.outcomes;
     if outcomes.len() > 1 {
         columns.extend(outcomes.iter().enumerate().map(|(i, outcome)| {
-            numbers(outcome.name, "% of FD", &|row| Some(row.logs[i].rms_pct))
+            numbers(&outcome.file(), "% of FD", &|row| Some(row.logs[i].rms_pct))
         }));
     }
     side_by_side(&Column::text("", "estimator", names), &columns, width)
+}
+
+impl Outcome<'_> {
+    /// The name of the recording's file, for tables and figures.
+    #[must_use]
+    pub fn file(&self) -> String {
+        short_name(Path::new(self.name))
+    }
 }
 
 /// What to use, and the lines of Rust, each line within `width` characters except those of Rust.

@@ -1,6 +1,6 @@
 //! What is reported about a log that is read.
 
-use super::replay;
+use super::{LOGS, replay};
 use crate::{Folder, HOST_SIM};
 
 #[test]
@@ -47,7 +47,7 @@ fn columns_and_units_that_were_converted_are_reported() {
             "wraps-at-32-bits.csv",
             "--column t=micros,counts_large=encoder,edge_tick=capture_us,edge_bound=capture_bound",
             "t wraps at 2^32 us and is unwrapped, the first time in line 103: a counter of 32 bits \
-             wraps-at-32-bits.csv: edge_tick wraps at 2^32 and is unwrapped, the first time in line 103",
+             LOGS/wraps-at-32-bits.csv: edge_tick wraps at 2^32 and is unwrapped, the first time in line 103",
         ),
         (
             "plotjuggler.csv",
@@ -72,7 +72,10 @@ fn columns_and_units_that_were_converted_are_reported() {
     ] {
         let (_, notes) = replay(&folder, log, options);
         let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(notes.contains(said), "{log}: {notes}");
+        assert!(
+            notes.contains(&said.replace("LOGS", LOGS)),
+            "{log}: {notes}"
+        );
     }
     // Nothing is said about a log that needs no conversion.
     let (_, notes) = replay(&folder, "own.csv", "");
@@ -184,4 +187,41 @@ fn counts_that_a_logger_clips_are_reported() {
     let notes = String::from_utf8(output.stderr).unwrap();
     let said = "clipped.csv: counts_large comes to 32767 and stays there, in ";
     assert!(notes.contains(said), "{notes}");
+}
+
+#[test]
+fn errors_and_notes_name_the_path_as_it_is_given() {
+    let folder = Folder::new(HOST_SIM);
+    std::fs::create_dir(folder.path().join("logs")).unwrap();
+    let rows = |n: usize| {
+        with_current("current", "0.9")
+            .lines()
+            .take(n)
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    folder.write("logs/short.csv", rows(11) + "\n");
+    folder.write("logs/long.csv", rows(5001) + "\n");
+    for command in ["recommend logs/short.csv", "identify logs/short.csv"] {
+        let line = folder.refused(command);
+        assert!(
+            line.starts_with("error: logs/short.csv: "),
+            "{command}: {line}"
+        );
+    }
+    for command in [
+        "replay logs/long.csv --estimator pll --out v.csv",
+        "recommend logs/long.csv",
+    ] {
+        let output = folder.run(command);
+        let notes = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{command}: {notes}");
+        let named: Vec<_> = notes
+            .lines()
+            .filter(|line| line.contains(".csv: "))
+            .collect();
+        assert!(!named.is_empty(), "{command}: {notes}");
+        let is_path = |line: &&str| line.starts_with("logs/long.csv: ");
+        assert!(named.iter().all(is_path), "{command}: {notes}");
+    }
 }
