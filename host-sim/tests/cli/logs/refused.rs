@@ -33,6 +33,13 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
     (
+        "fortran.csv",
+        "",
+        &[
+            "line 2: column t: '0.000000000D+00' is not a number; write its exponent with E in the place of D",
+        ],
+    ),
+    (
         "ros2-echo.csv",
         "",
         &[

@@ -54,6 +54,9 @@ fn remedy(text: &str, [column, theirs]: [&str; 2], is_first: bool) -> String {
         time if column != Column::T.name() && time.contains(':') && time.starts_with(digits) => {
             "it is a time: name another column with --column".to_owned()
         }
+        number if has_fortran_exponent(number) => {
+            "write its exponent with E in the place of D".to_owned()
+        }
         measured if has_unit(measured) => "write it without its unit".to_owned(),
         minus if minus.starts_with('\u{2212}') => "write the minus sign as '-'".to_owned(),
         _ if has_thousands(text) => "write it without separators of thousands".to_owned(),
@@ -72,6 +75,13 @@ fn is_date(text: &str) -> bool {
     let begins = text.starts_with(|c: char| c.is_ascii_digit());
     has_digits
         && (text.contains(':') || begins && (text.matches('-').count() > 1 || text.contains('t')))
+}
+
+/// Whether a field, in lower case, is a number of double precision as Fortran writes it: 1.0D+00.
+fn has_fortran_exponent(text: &str) -> bool {
+    let is_exponent = |text: &str| text.parse::<i32>().is_ok();
+    text.split_once('d')
+        .is_some_and(|(number, exponent)| number.parse::<f64>().is_ok() && is_exponent(exponent))
 }
 
 /// Whether a field is a number and a unit: 0.5 deg.
@@ -146,6 +156,7 @@ mod tests {
                 "it is a list: write each of its numbers in a field of its own",
             ),
             ("[0.5]:", "write it without brackets"),
+            ("-1.25D+00", "write its exponent with E in the place of D"),
             ("x", "correct the field, or remove the row"),
         ] {
             let text = format!("t,counts_large\n0,0\n0.001,{field}\n");
