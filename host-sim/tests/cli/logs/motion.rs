@@ -34,6 +34,10 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("times-of-day.csv", "--column t=clock,counts_large=encoder"),
     ("dates.csv", "--column t=time,counts_large=encoder"),
     (
+        "list-of-axes.jsonl",
+        "--column t=time_ms,counts_large=axes.0.pos_deg",
+    ),
+    (
         "wraps-at-32-bits.csv",
         "--column t=micros,counts_large=encoder,edge_tick=capture_us,edge_bound=capture_bound",
     ),

@@ -89,7 +89,16 @@ impl<'de> Visitor<'de> for Inside<'_> {
         while let Some(value) = list.next_element()? {
             values.push(value);
         }
-        if !values.is_empty() && values.len() <= MOST && values.iter().all(is_number) {
+        let is_short = (1..=MOST).contains(&values.len());
+        if is_short && values.iter().all(Value::is_object) {
+            for (place, value) in values.into_iter().enumerate() {
+                let name = format!("{}.{place}", self.name);
+                let object = Inside { name, to: self.to };
+                object.deserialize(value).map_err(A::Error::custom)?;
+            }
+            return Ok(());
+        }
+        if is_short && values.iter().all(is_number) {
             for (place, value) in values.into_iter().enumerate() {
                 let name = format!("{}.{place}", self.name);
                 let number = Inside { name, to: self.to };
@@ -248,7 +257,7 @@ mod tests {
 
     #[test]
     fn numbers_of_a_list_are_fields() {
-        let line = r#"{"q": [0.5, -2, null], "a": {"tau": [0.25]}, "name": ["j1", "j2"], "b": [[1, 2]], "c": []}"#;
+        let line = r#"{"q": [0.5, -2, null], "a": {"tau": [0.25]}, "name": ["j1", "j2"], "b": [[1, 2]], "c": [], "d": [{}, 1]}"#;
         let expected = [
             field("q.0", "0.5", Mark::Text),
             field("q.1", "-2", Mark::Text),
@@ -257,10 +266,28 @@ mod tests {
             field("name", "[\"j1\",\"j2\"]", Mark::Text),
             field("b", "[[1,2]]", Mark::Text),
             field("c", "[]", Mark::Text),
+            field("d", "[{},1]", Mark::Text),
         ];
         assert_eq!(shown(line), expected);
         let long = format!("{{\"image\": [{}0]}}", "0,".repeat(MOST));
         assert_eq!(shown(&long)[0].0, "image");
+    }
+
+    #[test]
+    fn objects_of_a_list_are_flattened() {
+        let line = r#"{"t": 0, "axes": [{"pos": 1.5, "q": [2]}, {"pos": NaN, "id": {"n": "b"}}]}"#;
+        let expected = [
+            field("t", "0", Mark::Text),
+            field("axes.0.pos", "1.5", Mark::Text),
+            field("axes.0.q.0", "2", Mark::Text),
+            field("axes.1.pos", "", Mark::Blank("NaN")),
+            field("axes.1.id.n", "b", Mark::Text),
+        ];
+        let mut found = shown(line);
+        found.sort_by(|a, b| a.0.cmp(&b.0));
+        let mut expected = expected.to_vec();
+        expected.sort_by(|a, b| a.0.cmp(&b.0));
+        assert_eq!(found, expected);
     }
 
     #[test]
