@@ -33,6 +33,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("absolute-deg.csv", "--column counts_large=angle:deg"),
     ("times-of-day.csv", "--column t=clock,counts_large=encoder"),
     ("dates.csv", "--column t=time,counts_large=encoder"),
+    ("minutes.csv", "--column t=time,counts_large=counts"),
     (
         "list-of-axes.jsonl",
         "--column t=time_ms,counts_large=axes.0.pos_deg",

@@ -39,6 +39,11 @@ fn columns_and_units_that_were_converted_are_reported() {
             "t is a date and a time: s from the midnight before the first row on",
         ),
         (
+            "minutes.csv",
+            "--column t=time,counts_large=counts",
+            "an hour is full in line 102, and t goes on",
+        ),
+        (
             "serial-monitor-times.txt",
             "--row-rate 1000",
             "the times of a serial monitor before the lines are not read: they are those of arrival",

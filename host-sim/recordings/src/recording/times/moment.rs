@@ -7,7 +7,10 @@ use jiff::{SignedDuration, Timestamp};
 pub(crate) const DAY_NS: i128 = 86_400_000_000_000;
 
 /// An hour, ns.
-const HOUR_NS: i128 = DAY_NS / 24;
+pub(crate) const HOUR_NS: i128 = DAY_NS / 24;
+
+/// A minute, ns.
+const MINUTE_NS: i128 = HOUR_NS / 60;
 
 /// What a field of time has in the place of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +21,8 @@ pub(crate) enum Kind {
     Date,
     /// Hours, minutes and seconds: a time of day or a duration.
     Clock,
+    /// Minutes, and seconds with a fraction: a duration, or a time of day without its hours.
+    Minutes,
     /// Whole seconds, with the part of a second in another column.
     Seconds,
 }
@@ -41,8 +46,25 @@ impl Moment {
         }
         match first.contains(['-', '/']) {
             true => Self::date(text),
-            false => Self::clock(text),
+            false => Self::clock(text).or_else(|| Self::minutes(text)),
         }
+    }
+
+    /// `12:00.5`. Without a fraction these may be hours and minutes.
+    fn minutes(text: &str) -> Option<Self> {
+        let (minutes, seconds) = text.split_once(':')?;
+        let (whole, fraction) = seconds.split_once(['.', ','])?;
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+        let is_second = whole.len() == 2 && whole < "60";
+        if !is_number(minutes) || minutes.len() > 3 || !is_second || !is_number(fraction) {
+            return None;
+        }
+        let within: Time = format!("00:00:{seconds}").parse().ok()?;
+        let within: SignedDuration = within.duration_since(Time::midnight());
+        Some(Self {
+            kind: Kind::Minutes,
+            ns: minutes.parse::<i128>().ok()? * MINUTE_NS + within.as_nanos(),
+        })
     }
 
     /// `2025-03-01T12:00:00.5`, with or without an offset from UTC.
@@ -174,6 +196,9 @@ mod tests {
             ("2 days 00:00:01", Kind::Clock, 2 * DAY_NS + SECOND),
             ("12:00:00.5 PM", Kind::Clock, 12 * HOUR_NS + SECOND / 2),
             ("12:00:01 am", Kind::Clock, SECOND),
+            ("00:00.000", Kind::Minutes, 0),
+            ("1:02,5", Kind::Minutes, 125 * SECOND / 2),
+            ("75:00.000001", Kind::Minutes, 75 * MINUTE_NS + 1000),
             ("1:00:00PM", Kind::Clock, 13 * HOUR_NS),
             ("3/1/2025 11:00:00 AM", Kind::Clock, 11 * HOUR_NS),
             (
@@ -199,6 +224,12 @@ mod tests {
             "-3",
             "2025-03-01",
             "12:00",
+            "12:60.5",
+            "12:0.5",
+            "12:00.",
+            "1234:00.5",
+            "-1:00.5",
+            "12:00.5 PM",
             ":",
             "::",
             "1:2:3",

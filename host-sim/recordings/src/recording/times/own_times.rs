@@ -4,7 +4,7 @@ use terminal::failure::Failure;
 
 use super::NEAR;
 use super::float_times::FloatTimes;
-use super::moment::{DAY_NS, Kind, Moment};
+use super::moment::{DAY_NS, HOUR_NS, Kind, Moment};
 use crate::recording::columns::scaled;
 use crate::recording::layout::{Part, Place};
 use crate::recording::options::units::{Quantity, Unit};
@@ -12,6 +12,9 @@ use crate::recording::text::row::Row;
 
 /// A day, s.
 const DAY_S: f64 = DAY_NS as f64 / 1e9;
+
+/// An hour, s.
+const HOUR_S: f64 = HOUR_NS as f64 / 1e9;
 
 /// Bits of the counters that are read as times.
 const BITS: [i32; 2] = [32, 16];
@@ -64,7 +67,7 @@ impl OwnTimes {
         };
         // Seconds since 1970 in a float have no more digits than 0.2 us.
         let origin_ns = match kind {
-            Kind::Clock => 0,
+            Kind::Clock | Kind::Minutes => 0,
             Kind::Instant | Kind::Date | Kind::Seconds => ns - ns.rem_euclid(DAY_NS),
         };
         match *self.form.get_or_insert(Form::Moment { kind, origin_ns }) {
@@ -75,6 +78,7 @@ impl OwnTimes {
                 let t = (ns - origin_ns) as f64 / 1e9;
                 Ok(match kind {
                     Kind::Clock => self.wraps.unwrapped(t, &[DAY_S], row.line),
+                    Kind::Minutes => self.wraps.unwrapped(t, &[HOUR_S], row.line),
                     Kind::Instant | Kind::Date | Kind::Seconds => t,
                 })
             }
@@ -88,6 +92,10 @@ impl OwnTimes {
             Some(Form::Moment {
                 kind: Kind::Clock, ..
             }) => Some("t is a time of day or a duration: s from 0:00:00 on"),
+            Some(Form::Moment {
+                kind: Kind::Minutes,
+                ..
+            }) => Some("t is minutes and seconds: s from 0:00 on"),
             Some(Form::Moment {
                 kind: Kind::Seconds,
                 origin_ns: 0,
@@ -107,6 +115,7 @@ impl OwnTimes {
                 unit.name(),
                 bits = (period * unit.per_s()).log2().round()
             ),
+            _ if period == HOUR_S => format!("an hour is full in line {line}, and t goes on"),
             _ => format!("midnight passes in line {line}, and t goes on"),
         });
         form.map(str::to_owned).into_iter().chain(wrap)
