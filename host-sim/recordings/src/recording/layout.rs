@@ -26,7 +26,8 @@ use formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 pub(super) use places::{Part, Place, Places};
 pub(super) use search::{UNKNOWN, is_fraction, is_number};
 use search::{
-    fractional, is_content, named, numbers, probable, since_1970, two_levels, without_value,
+    fractional, is_content, moments, named, numbers, probable, since_1970, two_levels,
+    without_value,
 };
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
@@ -62,6 +63,8 @@ pub(super) struct Layout {
     pub(super) cuts_first: bool,
     /// Places of the columns that have a time since 1970 in the first row, and its unit.
     pub(super) since_1970: Vec<(usize, &'static str)>,
+    /// Places of the columns that have a date or a time of day in the first row.
+    pub(super) moments: Vec<usize>,
     /// The first row of a text that has no header.
     pub(super) first_row: String,
     /// Whether the lines begin with the time stamps of a serial monitor.
@@ -145,6 +148,7 @@ impl Layout {
             fractional: fractional(&layout, &lines),
             without_value: without_value(&layout, &lines),
             since_1970: since_1970(&layout, &lines),
+            moments: moments(&layout, &lines),
             ..layout
         })
     }
@@ -168,6 +172,7 @@ impl Layout {
             without_value: Vec::new(),
             cuts_first: false,
             since_1970: Vec::new(),
+            moments: Vec::new(),
             first_row: String::new(),
             is_stamped: false,
             remarks: false,

@@ -33,7 +33,21 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("absolute-deg.csv", "--column counts_large=angle:deg"),
     ("times-of-day.csv", "--column t=clock,counts_large=encoder"),
     ("dates.csv", "--column t=time,counts_large=encoder"),
+    (
+        "dates-of-a-column.csv",
+        "--column t=when,counts_large=encoder:counts",
+    ),
     ("minutes.csv", "--column t=time,counts_large=counts"),
+    (
+        "french.csv",
+        "--column|t=temps (ms),counts_large=position (tr):rev",
+    ),
+    (
+        "german.csv",
+        "--column|t=Zeit in ms,counts_large=Winkel in Grad:deg",
+    ),
+    ("two-axes.csv", "--column t=time:s,counts_large=x_counts"),
+    ("one-name-twice.csv", "--column counts_large=2"),
     (
         "list-of-axes.jsonl",
         "--column t=time_ms,counts_large=axes.0.pos_deg",

@@ -32,6 +32,66 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         ],
     ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
+    // The options of these are followed in motion.rs.
+    (
+        "french.csv",
+        "",
+        &["--column 't=temps (ms),counts_large=position (tr):rev', where the unit rev is a guess"],
+    ),
+    (
+        "french.csv",
+        "--column|t=temps (ms),counts_large=position (tr)",
+        &[
+            "'tr' at the end of the name is no unit",
+            "--column 'counts_large=position (tr):rev'",
+        ],
+    ),
+    (
+        "german.csv",
+        "",
+        &["--column 't=Zeit in ms,counts_large=Winkel in Grad:deg', where the unit deg is a guess"],
+    ),
+    (
+        "dates-of-a-column.csv",
+        "",
+        &["--column 't=when,counts_large=encoder:counts', where the unit counts is a guess; read"],
+    ),
+    (
+        "minutes.csv",
+        "",
+        &["--column 't=time,counts_large=counts'; read"],
+    ),
+    (
+        "two-axes.csv",
+        "",
+        &[
+            "2 positions fit: x_counts; y_counts; name one",
+            "--column 't=time:s,counts_large=x_counts'",
+        ],
+    ),
+    (
+        "one-name-twice.csv",
+        "",
+        &[
+            "2 positions fit: counts in column 2; counts in column 3; name one",
+            "--column 'counts_large=2'",
+        ],
+    ),
+    (
+        "list-of-axes.jsonl",
+        "",
+        &[
+            "2 positions fit: axes.0.pos_deg; axes.1.pos_deg; name one",
+            "--column 't=time_ms,counts_large=axes.0.pos_deg'",
+        ],
+    ),
+    (
+        "can-dump.txt",
+        "",
+        &[
+            "line 1: the row has 'pos=3276', a name and a number in one field, and other fields without a name",
+        ],
+    ),
     (
         "fortran.csv",
         "",

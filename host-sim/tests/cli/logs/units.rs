@@ -50,7 +50,7 @@ fn end_of_a_name_that_is_no_unit_is_refused_with_the_units() {
             "angle [grad]",
             "error: r.csv: line 1: 'grad' at the end of the name is no unit of counts_large; there are \
              counts, deg, rad, rev, mdeg, mrad; convert the numbers, or state the unit where it is one of \
-             these, for example --column 'counts_large=angle [grad]:counts'",
+             these, for example --column 'counts_large=angle [grad]:deg'",
         ),
         (
             "true_omega",

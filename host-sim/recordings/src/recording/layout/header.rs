@@ -3,7 +3,7 @@
 use terminal::failure::Failure;
 
 use super::formats::Format;
-use super::hint::{self, example, theirs};
+use super::hint::{self, guessed_unit, theirs};
 use super::{Layout, Places};
 use crate::recording::options::{Column, Mapping};
 use crate::recording::text::prefixed;
@@ -27,7 +27,7 @@ pub(crate) fn missing(column: Column, layout: &Layout, places: &Places, name: &s
         (Column::T | Column::CountsLarge, Some(remedy)) => remedy,
         (Column::T | Column::CountsLarge, None) => format!(
             "{}{}; read without options are t with counts_large, and the logs of {}",
-            hint::option(layout),
+            hint::option(layout, places),
             hint::without_time(layout),
             known()
         ),
@@ -118,7 +118,7 @@ pub(crate) fn unknown_unit(
         short(unit),
         quantity.list(),
         theirs(layout, place),
-        example(quantity)
+        guessed_unit(layout, quantity, place)
     ))
 }
 
@@ -275,7 +275,9 @@ mod tests {
             ),
             (
                 "time_min,pos_urad\n0,1\n",
-                "--column 't=time_min,counts_large=pos_urad'",
+                "--column 't=time_min:UNIT,counts_large=pos_urad:UNIT', where 'min' is no unit of t (s, ms, us, ns), \
+                 and 'urad' is no unit of counts_large (counts, deg, rad, rev, mdeg, mrad): convert the numbers, and \
+                 write their unit in the place of UNIT; read",
             ),
             (
                 "stamp,the user's count\n0,1\n",

@@ -1,35 +1,26 @@
 //! Options that would read a log without a needed column.
 
+mod guess;
+mod languages;
+
 use device_files::to_digits;
 
 use super::endings::Ending;
-use super::formats::{Ambiguous, Format};
+use super::formats::Ambiguous;
 use super::header::short;
-use super::search::number;
-use super::{Keyed, Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
+use super::search::{is_number, number};
+use super::{Keyed, Layout, Places, has, is_duration};
 use crate::recording::options::Column;
 use crate::recording::options::units::Quantity;
-
-/// Characters of the longest name that a hint repeats; a longer one is called by its number.
-const LONGEST: usize = 80;
+use crate::recording::records::labelled::is_labelled;
+use guess::{ANGLE, guesses, is_unfit, parts, positions, times};
+pub(crate) use guess::{current, example, guessed_unit, theirs};
 
 /// Positions that a message lists.
 const LISTED: usize = 4;
 
-/// The unit of a position that has fractions, for an example.
-const ANGLE: &str = "rad";
-
-/// Parts of the names of what may be a position, and a time: more than say what they are.
-fn positions() -> Vec<&'static str> {
-    [POSITIONS, &["count"]].concat()
-}
-
-fn times() -> Vec<&'static str> {
-    [TIMES, &["sec", "ms"]].concat()
-}
-
 /// The option `--column`, with names and units.
-pub(crate) fn option(layout: &Layout) -> String {
+pub(crate) fn option(layout: &Layout, places: &Places) -> String {
     if layout.names.is_empty() {
         return "the file has no rows; write t,counts_large in its first line, and a row below for each sample".to_owned();
     }
@@ -60,34 +51,15 @@ pub(crate) fn option(layout: &Layout) -> String {
             ),
         };
     }
+    let name = match guess::choice(layout, places) {
+        Some(choice) => format!("{choice}; name one"),
+        None => "name the columns and units".to_owned(),
+    };
     format!(
-        "name the columns and units, for example --column {}{}",
+        "{name}, for example --column {}{}",
         parts(layout),
         only_indirect(layout).unwrap_or_default()
     )
-}
-
-/// The value of `--column` for the time and the position, with the units that no name states.
-fn parts(layout: &Layout) -> String {
-    let time = || guess(layout, Column::T, &times(), "TIME");
-    let parts = [
-        (!layout.has_rate).then(time).flatten(),
-        guess(layout, Column::CountsLarge, &positions(), "POSITION"),
-    ];
-    let parts: Vec<_> = parts.into_iter().flatten().collect();
-    let guessed: Vec<_> = parts.iter().filter_map(|part| part.guessed).collect();
-    let guessed = guesses(&guessed);
-    let texts: Vec<_> = parts.into_iter().map(|part| part.text).collect();
-    format!("'{}'{guessed}", texts.join(","))
-}
-
-/// What to say of units that are guesses.
-fn guesses(units: &[&str]) -> String {
-    match units {
-        [] => String::new(),
-        [one] => format!(", where the unit {one} is a guess"),
-        all => format!(", where the units {} are guesses", all.join(" and ")),
-    }
 }
 
 /// The value of `--column` for columns without names: by the first row, the time is a time since 1970 or the
@@ -128,12 +100,6 @@ fn numbered(layout: &Layout) -> String {
     )
 }
 
-/// A part of `--column`, and its unit if neither the name nor the numbers tell it.
-struct Guess {
-    text: String,
-    guessed: Option<&'static str>,
-}
-
 /// The name of a position that is not measured at the shaft, where there is no other one.
 fn only_indirect(layout: &Layout) -> Option<String> {
     let mut like = layout.names.iter().filter(|name| has(name, &positions()));
@@ -148,22 +114,13 @@ fn only_indirect(layout: &Layout) -> Option<String> {
     })
 }
 
-/// Whether by its `name` a quantity is another one than `column`, whose words it has.
-fn is_unfit(column: Column, name: &str) -> bool {
-    match column {
-        Column::T => is_duration(name),
-        Column::CountsLarge => is_derived(name) || is_indirect(name),
-        _ => false,
-    }
-}
-
 /// What a log needs whose header has no column of time, by its names.
 pub(crate) fn without_time(layout: &Layout) -> &'static str {
     let is_time = |(place, name): (usize, &String)| {
         let could_be = has(name, &times())
             || name.to_lowercase() == "t"
             || matches!(layout.ending(Column::T.quantity(), place), Ending::Unit(_));
-        could_be && !is_duration(name)
+        (could_be && !is_duration(name)) || layout.moments.contains(&place)
     };
     let can_do_without = layout.has_header() && !layout.has_rate && !layout.names.is_empty();
     match can_do_without && !layout.names.iter().enumerate().any(is_time) {
@@ -172,86 +129,11 @@ pub(crate) fn without_time(layout: &Layout) -> &'static str {
     }
 }
 
-/// The part of `--column` without a unit that names the column of the motor current, or the part for a
-/// column that probably has it; `None` if there is no such column.
-pub(crate) fn current(places: &Places, layout: &Layout) -> Option<String> {
-    let read = [Column::CurrentMeasured, Column::Current].map(|column| places.get(column));
-    if let Some(at) = read.into_iter().flatten().next() {
-        return Some(format!("{}={}", at.column.name(), theirs(layout, at.place)));
-    }
-    let words = ["current", "iq", "i_q", "amp", "torque", "effort"];
-    let part = guess(layout, Column::Current, &words, "")?.text;
-    (!part.starts_with("current=:")).then_some(part)
-}
-
-/// The part of `--column` for `column`, whose name probably has one of the `words`; `None` if the
-/// column has its own name.
-fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<Guess> {
-    let (ours, quantity) = (column.name(), column.quantity());
-    let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
-    let has_unit = |place: &usize| {
-        let is_fit = !is_unfit(column, &layout.names[*place]);
-        is_fit && matches!(layout.ending(quantity, *place), Ending::Unit(_))
-    };
-    let like = |name: &str| has(name, words) && !is_unfit(column, name);
-    let place = place(&|name| name == ours)
-        .or_else(|| place(&|name| name.to_lowercase() == ours))
-        .or_else(|| place(&like))
-        .or_else(|| (0..layout.names.len()).find(has_unit));
-    let Some(place) = place else {
-        return Some(Guess {
-            text: format!("{ours}={unknown}:{}", example(quantity)),
-            guessed: None,
-        });
-    };
-    let name = &layout.names[place];
-    let since_1970 = || {
-        let mut known = layout.since_1970.iter();
-        let known = known.find(|(at, _)| quantity == Quantity::Time && *at == place);
-        known.map(|(_, unit)| *unit)
-    };
-    let is_angle = quantity == Quantity::Position && layout.fractional.contains(&place);
-    // Of a name with another unit only its owner can say what the numbers are.
-    let is_silent = matches!(layout.ending(quantity, place), Ending::Nothing);
-    let known = known_unit(layout, quantity, place).or_else(since_1970);
-    let guessed = (is_silent && known.is_none()).then(|| match is_angle {
-        true => ANGLE,
-        false => example(quantity),
-    });
-    let unit = known.filter(|_| is_silent).or(guessed);
-    let unit = unit.map_or_else(String::new, |unit| format!(":{unit}"));
-    (name != ours).then(|| Guess {
-        text: format!("{ours}={}{unit}", theirs(layout, place)),
-        guessed,
-    })
-}
-
-/// The unit of a position that has the name of one of a known log.
-fn known_unit(layout: &Layout, quantity: Quantity, place: usize) -> Option<&'static str> {
-    let own = |name: &String| {
-        let keys = layout.keyed.iter().flat_map(|keyed| &keyed.keys);
-        let mut own = keys.filter_map(|key| name.strip_prefix(key.as_str())?.strip_prefix('.'));
-        own.next().unwrap_or(name).to_owned()
-    };
-    let names: Vec<_> = layout.names.iter().map(own).collect();
-    Format::position_unit(&names, place).filter(|_| quantity == Quantity::Position)
-}
-
-/// What an option calls the column at `place`: its name, or its number where the name is too long or
-/// needs more than quotes in a shell.
-pub(crate) fn theirs(layout: &Layout, place: usize) -> String {
-    let name = &layout.names[place];
-    let is_plain = |c: char| !c.is_control() && c != '\'' && c != '\u{fffd}';
-    match name.chars().count() <= LONGEST && name.chars().all(is_plain) {
-        true => name.clone(),
-        false => (place + 1).to_string(),
-    }
-}
-
 /// A reason for a missing column that is better than its name.
 pub(crate) fn reason(layout: &Layout, places: &Places) -> Option<String> {
     let ambiguous = ambiguous(layout, places);
     keyed(layout)
+        .or_else(|| labelled(layout))
         .or(ambiguous)
         .or_else(|| captured(layout))
         .or_else(|| levels(layout))
@@ -271,6 +153,21 @@ fn keyed(layout: &Layout) -> Option<String> {
         short(&columns.join(".")),
         listed.join("; "),
         parts(layout)
+    ))
+}
+
+/// Rows of which some fields have their names in them.
+fn labelled(layout: &Layout) -> Option<String> {
+    let fields = layout.separator.split(&layout.first_row);
+    let numbers = fields
+        .iter()
+        .filter(|field| is_number(field, layout.separator));
+    let field = fields.iter().find(|field| is_labelled(field));
+    let field = field.filter(|_| numbers.count() < 2)?;
+    Some(format!(
+        "the row has '{}', a name and a number in one field, and other fields without a name; write the numbers \
+         alone, separated by commas, and the names in a line above them, for example t,counts_large",
+        short(field)
     ))
 }
 
@@ -353,11 +250,6 @@ fn levels(layout: &Layout) -> Option<String> {
          them with host-sim decode",
         names.collect::<Vec<_>>().join(", ")
     ))
-}
-
-/// A unit for an example.
-pub(crate) const fn example(quantity: Quantity) -> &'static str {
-    quantity.units()[0].name()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use super::formats::Format;
 use super::words::{POSITIONS, TIMES, has};
 use crate::recording::options::units::{Quantity, Unit};
 use crate::recording::options::{Column, Mapping, ReadOptions};
+use crate::recording::records::labelled::is_labelled;
 use crate::recording::text::fields::is_without_value;
 use crate::recording::text::separator::{Separator, comment};
 use crate::recording::times::moment::Moment;
@@ -110,7 +111,9 @@ fn without_numbers(lines: &[&str], limit: Option<String>) -> Layout {
     let separator = separator.unwrap_or(Separator::Comma);
     let fields = separator.split(line).len();
     let next = text.next();
-    let is_row = next.is_some_and(|(_, next)| are_rows(separator, line, next));
+    let is_row = next.is_some_and(|(_, next)| {
+        are_rows(separator, line, next) || are_labelled(separator, line, next)
+    });
     if is_row || (fields == 1 && is_number(line.trim(), separator)) {
         let mut above = lines[..index].iter().enumerate().rev();
         let header = above.find_map(|(at, line)| {
@@ -158,6 +161,15 @@ fn are_rows(separator: Separator, one: &str, next: &str) -> bool {
     };
     let [one, next] = [one, next].map(numbers);
     one == next && one.iter().filter(|is_number| **is_number).count() >= 2
+}
+
+/// Whether two adjacent lines are rows of which some field has its name in it: both have such fields in the same columns.
+fn are_labelled(separator: Separator, one: &str, next: &str) -> bool {
+    let [one, next] = [one, next].map(|line| -> Vec<bool> {
+        let fields = separator.split(line);
+        fields.iter().map(|field| is_labelled(field)).collect()
+    });
+    one == next && one.contains(&true)
 }
 
 /// Whether a line has more than separators.
@@ -237,6 +249,13 @@ pub(super) fn since_1970(layout: &Layout, lines: &[&str]) -> Vec<(usize, &'stati
     fields
         .filter_map(|(place, field)| Some((place, unit(field)?)))
         .collect()
+}
+
+/// Places of the columns of `layout` that are a date or a time of day in the first of the rows among `lines`.
+pub(super) fn moments(layout: &Layout, lines: &[&str]) -> Vec<usize> {
+    let first = rows(layout, lines).into_iter().next().unwrap_or_default();
+    let is_moment = |place: &usize| Moment::parse(&first[*place]).is_some();
+    (0..first.len()).filter(is_moment).collect()
 }
 
 /// Separator and number of fields of a line of numbers.

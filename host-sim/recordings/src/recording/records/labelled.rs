@@ -115,6 +115,11 @@ fn fields(line: &[u8]) -> Option<Vec<Field>> {
     (!fields.is_empty()).then_some(fields)
 }
 
+/// Whether a field of a row is a name and its number.
+pub(crate) fn is_labelled(field: &str) -> bool {
+    fields(field.as_bytes()).is_some()
+}
+
 /// The number that `text` begins with, and what comes after it.
 fn number(text: &str) -> Option<(&str, &str)> {
     let is_of_number = |c: char| c.is_ascii_alphanumeric() || ['.', '+', '-'].contains(&c);

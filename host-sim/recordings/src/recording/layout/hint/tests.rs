@@ -248,3 +248,93 @@ fn units_that_nothing_states_are_called_guesses() {
         assert!(error.contains(said), "{error}");
     }
 }
+
+#[test]
+fn column_of_dates_is_the_time_of_the_example() {
+    for (name, field, option) in [
+        ("when", "2026-03-01T23:59:57.00K+05:30", "t=when"),
+        ("timestamp", "2026-03-01T23:59:57.00K+0530", "t=timestamp"),
+        ("when", "12:00:00.00K", "t=when"),
+        ("time", "59:59.99K", "t=time"),
+        // The unit of the name is none of the date.
+        ("time_min", "12:00:00.00K", "t=time_min:s"),
+    ] {
+        let row = |k: usize| format!("{},{}\n", field.replace('K', &k.to_string()), 8 * k);
+        let text = format!("{name},encoder\n{}", (0..10).map(row).collect::<String>());
+        let error = read(&text, "").unwrap_err();
+        let said = format!(
+            "found: {name}; encoder, separated by ','; name the columns and units, for example --column \
+             '{option},counts_large=encoder:counts', where the unit counts is a guess; read"
+        );
+        assert!(error.contains(&said), "{error}");
+        let recording = read(&text, &format!("{option},counts_large=encoder:counts")).unwrap();
+        let steps = recording.t.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(steps.into_iter().all(|step| (step - 0.001).abs() < 1e-6));
+    }
+}
+
+#[test]
+fn positions_of_which_one_is_meant_are_listed() {
+    for (names, said) in [
+        (
+            "time,x_counts,y_counts",
+            "2 positions fit: x_counts; y_counts; name one, for example --column \
+             't=time:s,counts_large=x_counts', where the unit s is a guess; read",
+        ),
+        // A name that stands twice is no option.
+        (
+            "t,counts,counts",
+            "2 positions fit: counts in column 2; counts in column 3; name one, for example --column \
+             'counts_large=2'; read",
+        ),
+        (
+            "t,pos_mm,pos_raw",
+            "name the columns and units, for example --column 'counts_large=pos_raw:counts', where",
+        ),
+        (
+            "t,u_deg_pos,v_pos,w_pos,x_pos,y_pos",
+            "5 positions fit: u_deg_pos; v_pos; w_pos; x_pos; ...; name one, for",
+        ),
+        (
+            "time,time,counts",
+            "name the columns and units, for example --column 't=time:s,counts_large=counts', where",
+        ),
+        (
+            "counts,time,time",
+            "name the columns and units, for example --column 't=2:s,counts_large=counts', where",
+        ),
+    ] {
+        let field = |name: &str, k: usize| match name.starts_with('t') {
+            true => format!("{}", k as f64 * 1e-3),
+            false => k.to_string(),
+        };
+        let row = |k: usize| {
+            let fields: Vec<_> = names.split(',').map(|name| field(name, k)).collect();
+            format!("{}\n", fields.join(","))
+        };
+        let text = format!("{names}\n{}", (0..20).map(row).collect::<String>());
+        let error = read(&text, "").unwrap_err();
+        assert!(error.contains(said), "{names}: {error}");
+        let (_, option) = error.split_once("--column '").unwrap();
+        let (option, _) = option.split_once('\'').unwrap();
+        read(&text, option).unwrap();
+    }
+}
+
+#[test]
+fn row_with_a_name_in_one_field_is_no_header() {
+    let row = |k: usize| format!("(176722560{k}.000000) can0 pos=-{k}\n");
+    let text: String = (0..9).map(row).collect();
+    let said = "r.csv: line 1: the row has 'pos=-0', a name and a number in one field, and other fields without a \
+                name; write the numbers alone, separated by commas, and the names in a line above them, for example \
+                t,counts_large";
+    assert_eq!(read(&text, "").unwrap_err(), said);
+    // Other columns may be read.
+    let row = |k: usize| format!("{k}e-3 {k} state=1\n");
+    let text: String = (0..9).map(row).collect();
+    let error = read(&text, "").unwrap_err();
+    assert!(
+        error.contains("--column t=1:s,counts_large=2:counts"),
+        "{error}"
+    );
+}
