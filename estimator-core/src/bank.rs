@@ -78,14 +78,17 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// surprise   every member is 8 standard deviations off, e² > 64 S: w = 1 of the last one, 0 of the others;
 ///            40: its P_11 += e² / 10 and P_22 += e² / 100, e² at most 1e4 counts²
 /// restart    Σ is no positive finite number: the bank starts anew
-/// noise      with stamps R = R (1 - 0.1 ρ)       ρ = e e' / S within ±1, of Σ w_i e_i, Σ w_i S_i, e' the edge before; R
-///            within 3e-4 and 0.1 counts²; less 0.02 ρ S where ρ < 0 as at the edge before, and the tick before had
-///            an edge or another count; at 0.1 counts² no stamp is used
-///            without, or with stamps that are not used, s = Σ w_i s_i, s' the sample before, V = P_00 + R of the
-///            last member; R within 1e-5 and 1e4 counts²:
-///            R = 0.85 R where s² > V / 2 and none of the last eight products s s' is below 0; else
-///            R = R + a R (min(s² / V, 1.5) - 0.5) - 0.02 s s'    s s' within ±V
-///            a = 0.03, but 0.0009 where the count stays and s² < V / 2. s s' < 0 after one that was not is 0, or
+/// noise      with stamps R = R (1 - 0.1 ρ)       ρ = e (e' + e'' / 2) / S within ±1, of Σ w_i e_i, Σ w_i S_i and the
+///            two edges before; R within 3e-4 and 0.1 counts²; less 0.02 e e' where e e' < 0 as at the edge before, and
+///            the tick before had an edge or another count. R = s² where e s < 0, e² > 2 S, s² > 1/2 and none of the
+///            last eight products e e' is below 0. At 0.1 counts² no stamp is used
+///            without, or with stamps that are not used, s = Σ w_i s_i, s' the last one that was not 0, V = P_00 + R of
+///            the last member, r = Σ w_i r_i of the part r_i of V that the interval removes; u = min(0.6 r, 0.5); R
+///            within 1e-5 and 1e4 counts²:
+///            R = 0.998 R if s = 0 and the count is new
+///            R = 0.95 R if s² > u V and none of the last eight products s s' is below 0; else
+///            R = R + a (min(s² / V, 1.5) - u) min(V, R + 0.01) - 0.02 s s'    s s' within ±V
+///            a = 0.03, but 0.006 where the count stays and s² < u V. s s' < 0 after one that was not is 0, or
 ///            at least -1/4 count² where the count turned back by one
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
 /// ```

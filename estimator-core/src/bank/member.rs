@@ -33,6 +33,8 @@ pub(super) struct Correction {
     pub(super) shift: f32,
     /// Variance of the position with its noise, counts².
     pub(super) variance: f32,
+    /// Part of this variance that the interval removes, 0 to 1; 0 inside.
+    pub(super) removed: f32,
 }
 
 /// Innovation of an edge.
@@ -125,6 +127,7 @@ impl Member {
                 likelihood: Likelihood::CERTAIN,
                 shift: 0.0,
                 variance,
+                removed: 0.0,
             };
         };
         let per_variance = 1.0 / variance;
@@ -134,6 +137,7 @@ impl Member {
             likelihood: truncated.likelihood,
             shift: truncated.shift,
             variance,
+            removed,
         }
     }
 }

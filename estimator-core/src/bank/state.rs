@@ -229,15 +229,16 @@ impl<const K: usize> ModelBankState<K> {
     ) -> Judged<K> {
         let expected = self.members[K - 1].position;
         let mut likelihoods = [Likelihood::default(); K];
-        let (mut shift, mut variance) = (0.0, 1.0);
+        let (mut shift, mut variance, mut removed) = (0.0, 1.0, 0.0);
         for i in 0..K {
             let correction = self.members[i].correct_by_interval(ends, self.noise);
             likelihoods[i] = correction.likelihood;
             shift += self.weights[i] * correction.shift;
+            removed += self.weights[i] * correction.removed;
             variance = correction.variance;
         }
         if learns {
-            self.learn_noise_of_counts(shift, variance, turns);
+            self.learn_noise_of_counts(shift, variance, removed, turns);
         }
         Judged {
             likelihoods,

@@ -25,24 +25,34 @@ const SECOND: f32 = 0.5;
 const LARGE: f32 = 2.0;
 const CONTRADICTION: f32 = 0.5;
 
-/// Change of R in the product of two innovations or shifts, and by a count in R by the size of a shift.
+/// Change of R in the product of two innovations or shifts, and in a variance by the size of a shift.
 const GAIN_OF_PRODUCT: f32 = 0.02;
 const GAIN_OF_SIZE: f32 = 0.03;
 
-/// Square of a shift over its variance at which R is right, and the largest one that counts.
-const USUAL: f32 = 0.5;
+/// Largest square of a shift over its variance that counts, and what is usual: a share of the part of the variance that
+/// the interval removes, which is the mean of the whole square where R is right, and at most so much.
 const LARGEST: f32 = 1.5;
+const USUAL: f32 = 0.6;
+const LARGEST_USUAL: f32 = 0.5;
 
 /// Largest product of two shifts where the count turned back by one, counts².
 const LARGEST_OF_TURN: f32 = 0.25;
 
-/// Part of a decrease of R that a count has which stays: it says little of the noise.
-const STAYING: f32 = 0.03;
+/// Part of the variance beyond R that the size of a shift is learned from, counts²: that of a small noise behind an R that
+/// is far too small.
+const BEYOND: f32 = 0.01;
+
+/// Part of a decrease of R that a count has which stays: what an end of its interval removes again and again says little
+/// of the noise.
+const STAYING: f32 = 0.2;
+
+/// R after a new count in whose interval every member is far inside, in R: a noise that is never seen is forgotten.
+const FORGETTING: f32 = 0.998;
 
 /// Shifts or innovations of one sign in a row that white ones seldom are. Large shifts are then a motion that the
 /// members lag, and R after each is `FALL` times R.
 const ONE_SIDED: i8 = 8;
-const FALL: f32 = 0.85;
+const FALL: f32 = 0.95;
 
 impl<const K: usize> ModelBankState<K> {
     /// The variance R of the position of a boundary, counts², as estimated from the innovations of
@@ -106,21 +116,30 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Changes R by the `shift` of a position whose variance with its noise is `variance`. A noise of less than half
-    /// a count seldom makes three shifts alternate, but it makes the count turn back: two shifts suffice if it
-    /// `turns`.
+    /// Changes R by the `shift` of a position whose variance with its noise is `variance`, and of which the interval
+    /// has `removed` a part: by the product with the shift before, and by its size against what is usual. A position far
+    /// inside its interval says little of the noise, however often. A noise of less than half a count seldom makes three
+    /// shifts alternate, but it makes the count turn back: two shifts suffice if it `turns`.
     #[inline(always)]
-    pub(super) fn learn_noise_of_counts(&mut self, shift: f32, variance: f32, turns: bool) {
-        let is_new = self.still == 0;
+    pub(super) fn learn_noise_of_counts(
+        &mut self,
+        shift: f32,
+        variance: f32,
+        removed: f32,
+        turns: bool,
+    ) {
+        if shift == 0.0 {
+            if self.still == 0 {
+                self.noise = of_count(self.noise * FORGETTING);
+            }
+            return;
+        }
         let (product, alternated) = self.product(shift);
-        let size = smaller(shift * shift / variance, LARGEST) - USUAL;
+        let size =
+            smaller(shift * shift / variance, LARGEST) - smaller(USUAL * removed, LARGEST_USUAL);
         let noise = if size > 0.0 && self.signs >= ONE_SIDED {
             self.noise * FALL
         } else {
-            let gain = match size < 0.0 && !is_new {
-                true => GAIN_OF_SIZE * STAYING,
-                false => GAIN_OF_SIZE,
-            };
             let product = if product >= 0.0 || alternated {
                 limited(product, variance)
             } else if turns {
@@ -128,9 +147,20 @@ impl<const K: usize> ModelBankState<K> {
             } else {
                 0.0
             };
-            self.noise + gain * size * self.noise - GAIN_OF_PRODUCT * product
+            let gain = match size < 0.0 && self.still != 0 {
+                true => GAIN_OF_SIZE * STAYING,
+                false => GAIN_OF_SIZE,
+            };
+            let share = smaller(variance, self.noise + BEYOND);
+            self.noise + gain * size * share - GAIN_OF_PRODUCT * product
         };
-        // Both ends are constants: the panic of `clamp` is removed.
-        self.noise = noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT);
+        self.noise = of_count(noise);
     }
+}
+
+/// R of a count, within its range.
+#[inline(always)]
+const fn of_count(noise: f32) -> f32 {
+    // Both ends are constants: the panic of `clamp` is removed.
+    noise.clamp(LEAST_OF_COUNT, LARGEST_OF_COUNT)
 }

@@ -183,6 +183,7 @@ impl Definition {
         let (mut error, mut variance) = (0.0, 0.0);
         let mut shifted = 0.0;
         let (mut nearest, mut last) = (f64::INFINITY, 0.0);
+        let (mut removed, mut is_inside) = (0.0, true);
         for (i, filter) in self.filters.iter_mut().enumerate() {
             let q = LOWEST * 10f64.powi((self.rung + i) as i32);
             filter.x = transition * filter.x;
@@ -219,6 +220,10 @@ impl Definition {
                 };
             }
             nearest = nearest.min(off);
+            // Ends farther away than that truncate nothing in the core.
+            let reach = if changed { 3.5 } else { 3f64.sqrt() };
+            is_inside &= ends[0] < -reach && ends[1] > reach;
+            removed += self.weights[i] * (1.0 - kept);
             let k = filter.p.column(0) / deviation;
             shifted += self.weights[i] * deviation * shift;
             if edge.is_none() {
@@ -230,7 +235,11 @@ impl Definition {
             filter.p -= k * k.transpose() * (1.0 - kept);
             likelihoods.push(likelihood.unwrap_or(probability));
         }
-        if edge.is_some() || !is_exact {
+        if edge.is_none() && !is_exact && is_inside {
+            if moved {
+                self.noise = (0.998 * self.noise).max(1e-5);
+            }
+        } else if edge.is_some() || !is_exact {
             let of_two = self.innovation + 0.5 * self.second_innovation;
             let of_two = (error * of_two / variance).clamp(-1.0, 1.0);
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
@@ -265,16 +274,17 @@ impl Definition {
                     false => noise,
                 }
             } else {
-                let size = (error * error / variance).min(1.5) - 0.5;
+                let size = (error * error / variance).min(1.5) - (0.6 * removed).min(0.5);
                 let gain = if size < 0.0 && !moved {
-                    0.03 * 0.03
+                    0.03 * 0.2
                 } else {
                     0.03
                 };
+                let share = variance.min(self.noise + 0.01);
                 let noise = if size > 0.0 && self.same >= 8 {
-                    0.85 * self.noise
+                    0.95 * self.noise
                 } else {
-                    self.noise * (1.0 + gain * size) - 0.02 * product + 0.02 * turned
+                    self.noise + gain * size * share - 0.02 * product + 0.02 * turned
                 };
                 noise.clamp(1e-5, 1e4)
             };

@@ -67,11 +67,11 @@ impl Errors {
     }
 }
 
-/// A noise of less than a count turns the count of a slow shaft back once in a while. Faster than a count per tick
-/// nothing distinguishes it from a motion.
+/// A noise of less than a count is learned at every speed. Of a shaft at rest in the middle of a count few counts tell of
+/// it.
 #[test]
 fn small_noise_of_counts_is_learned() {
-    for (deviation, slow) in [(0.1, 0.09), (0.2, 0.17), (0.3, 0.15), (0.5, 0.07)] {
+    for deviation in [0.1, 0.2, 0.3, 0.5] {
         for hz in [1000.0, 10_000.0] {
             // At rest in the middle of a count, counts/tick; the slowest crosses four counts in the time.
             for speed in [0.0, 1.0 / hz, 0.05, 0.37, 1.63, 7.39] {
@@ -81,8 +81,8 @@ fn small_noise_of_counts_is_learned() {
                 let motion = |t: f64| [100.5 + speed * hz * t, speed * hz];
                 let errors = Errors::of(hz, [1.0, 5.0], deviation, 1234, motion);
                 let ratios = errors.ratios();
-                println!("{deviation} counts, {hz} Hz, {speed} counts/tick: {ratios:.3?}");
-                let bound = if speed < 1.0 { slow } else { 0.3 };
+                println!("{deviation} counts, {hz} Hz, {speed} counts/tick: {ratios:.4?}");
+                let bound = if speed > 0.0 { 0.01 } else { 0.1 };
                 let is_good = ratios.iter().all(|ratio| *ratio < bound);
                 assert!(is_good, "{deviation} {hz} {speed}: {ratios:?}");
             }
