@@ -63,12 +63,12 @@ fn statements_of_the_pages_hold() {
     }
     let moteus = |name, counts, khz, column| figure(&EVIDENCE_MOTEUS, name, counts, khz, column);
     let p99 = moteus("imm", 16_384, "30", "p99_pct");
-    assert!(p99 > 1.2 * moteus("peer:moteus", 16_384, "30", "p99_pct"));
+    assert!(p99 > 1.1 * moteus("peer:moteus", 16_384, "30", "p99_pct"));
     assert!(p99 > 1.5 * moteus("imm", 16_384, "1", "p99_pct"));
     let rms = |name, counts| moteus(name, counts, "30", "rms_pct");
-    assert!((rms("peer:moteus", 16_384) / rms("imm", 16_384) - 1.0).abs() < 0.1);
+    assert!(rms("peer:moteus", 16_384) > 1.1 * rms("imm", 16_384));
     assert!(rms("peer:moteus", 16_384) < 0.9 * rms("peer:moteus-tuned", 16_384));
-    assert!((1.8..2.5).contains(&(rms("peer:moteus", 4096) / rms("imm", 4096))));
+    assert!((2.5..2.75).contains(&(rms("peer:moteus", 4096) / rms("imm", 4096))));
     let board = |name, counts| figure(&EVIDENCE_OPENFFBOARD, name, counts, "1", "rms_pct");
     assert!(board("peer:openffboard", 4096) < 0.9 * board("peer:openffboard-tuned", 4096));
     assert!(board("peer:openffboard", 10_000) > 1.05 * board("peer:openffboard-tuned", 10_000));
@@ -80,8 +80,8 @@ fn statements_of_the_pages_hold() {
     let default = [4096, 8192].map(|counts| delay("peer:odrive", counts, "8"));
     assert!(default[0] < 0.8 * delay("imm", 4096, "1"));
     assert!((default[1] / delay("imm", 8192, "1") - 1.0).abs() < 0.15);
-    assert!(delay("imm", 4096, "8") < 0.8 * default[0]);
-    assert!(delay("imm", 8192, "8") < 0.8 * default[1]);
+    assert!(delay("imm", 4096, "8") < 0.95 * default[0]);
+    assert!(delay("imm", 8192, "8") < 0.6 * default[1]);
     let odrive = |name, khz, column| figure(&EVIDENCE_ODRIVE, name, 4096, khz, column);
     let tuned = odrive("peer:odrive-tuned", "8", "rms_pct");
     assert!(tuned < 0.9 * odrive("pll-tuned", "8", "rms_pct"));
