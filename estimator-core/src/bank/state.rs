@@ -26,7 +26,7 @@ pub struct ModelBankState<const K: usize> {
     rung: u32,
     /// Variance R of the noise of a boundary, or of a count where no stamps are used, counts².
     pub(super) noise: f32,
-    /// Innovation of the edge, or shift by the count, before, counts.
+    /// Innovation of the edge before, or the last shift by a count that was not 0, counts.
     innovation: f32,
     /// Innovation of the edge before that one, counts.
     second_innovation: f32,
