@@ -216,10 +216,21 @@ pub fn trace(case: &Case, device: &Device, estimators: &[&Kind]) -> Result<Trace
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn case(scenario: ScenarioName, plant: PlantKind) -> Case {
+    /// Estimators with their presets on the default device, without plots.
+    pub(crate) fn settings(names: &[&str]) -> Settings {
+        Settings {
+            device: Device::default(),
+            estimators: names.iter().map(|it| Kind::named(it).unwrap()).collect(),
+            parameters: Parameters::default(),
+            wanted: Wanted::NONE,
+        }
+    }
+
+    /// A second of a scenario at 1 kHz.
+    pub(crate) fn case(scenario: ScenarioName, plant: PlantKind) -> Case {
         Case {
             scenario,
             rate_hz: 1000.0,
@@ -246,12 +257,7 @@ mod tests {
 
     #[test]
     fn damping_has_a_value_each_tenth_of_a_second() {
-        let settings = Settings {
-            device: Device::default(),
-            estimators: vec![Kind::named("adaptive").unwrap()],
-            parameters: Parameters::default(),
-            wanted: Wanted::NONE,
-        };
+        let settings = settings(&["adaptive"]);
         let case = case(ScenarioName::Heating, PlantKind::Friction);
         let outcomes = compare(&[case], &settings, &|| ()).unwrap();
         let damping = outcomes[0].damping.as_ref().unwrap();

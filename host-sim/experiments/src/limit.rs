@@ -199,25 +199,15 @@ fn run(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use catalogue::parameters::{Parameters, PlantKind};
-    use simulation::device::Device;
+    use crate::compare::tests::{case, settings};
+    use catalogue::parameters::PlantKind;
 
     #[test]
     fn errors_are_over_the_limit_of_the_same_signals() {
-        let names = ["low-pass", "m-over-t"];
-        let settings = Settings {
-            device: Device::default(),
-            estimators: names.map(|name| Kind::named(name).unwrap()).to_vec(),
-            parameters: Parameters::default(),
-            wanted: Wanted::NONE,
-        };
+        let settings = settings(&["low-pass", "m-over-t"]);
         let case = Case {
-            scenario: ScenarioName::Step,
-            rate_hz: 1000.0,
-            plant: PlantKind::Friction,
-            seed: 1,
             seconds: 0.4,
-            keep: false,
+            ..case(ScenarioName::Step, PlantKind::Friction)
         };
         let rows = limit(&[case], &settings, 50, &|| ()).unwrap();
         let found: Vec<_> = rows.iter().map(|row| row.estimator).collect();

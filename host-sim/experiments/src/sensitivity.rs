@@ -167,33 +167,24 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<Cell>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use catalogue::parameters::{Parameters, PlantKind};
-    use simulation::device::Device;
+    use crate::compare::tests::{case, settings};
+    use catalogue::parameters::PlantKind;
     use simulation::scenario::ScenarioName;
 
     #[test]
     fn percentages_are_of_the_finite_difference_and_a_model_feels_its_constants() {
-        let kinds = ["finite-difference", "observer"].map(|name| Kind::named(name).unwrap());
-        let settings = Settings {
-            device: Device::default(),
-            estimators: kinds.to_vec(),
-            parameters: Parameters::default(),
-            wanted: Wanted::NONE,
-        };
+        let names = ["finite-difference", "observer"];
+        let settings = settings(&names);
         let case = Case {
-            scenario: ScenarioName::Step,
-            rate_hz: 1000.0,
-            plant: PlantKind::Friction,
-            seed: 1,
             seconds: 0.5,
-            keep: false,
+            ..case(ScenarioName::Step, PlantKind::Friction)
         };
         let rows = sensitivity(&[case], &settings, &|| ()).unwrap();
-        let of = |kind: &Kind| -> Vec<_> {
-            let rows = rows.iter().filter(|row| row.estimator == kind.name);
+        let of = |name| -> Vec<_> {
+            let rows = rows.iter().filter(|row| row.estimator == name);
             rows.collect()
         };
-        let [difference, observer] = kinds.map(of);
+        let [difference, observer] = names.map(of);
         assert_eq!(difference.len(), 1 + ConstantError::at(&PARTS).len());
         assert!(difference.iter().all(|row| row.rms_pct == 100.0));
         let reference = difference[0].rms_rad_s;

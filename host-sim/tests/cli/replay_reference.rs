@@ -139,20 +139,22 @@ fn gap_and_bad_count_leave_the_scores_of_other_rows() {
     }
 }
 
+/// The velocities of a log that is too short for scores.
+const SHORT: [&str; 6] = [
+    "replay",
+    "short.csv",
+    "--estimator",
+    "pll",
+    "--out",
+    "v.csv",
+];
+
 #[test]
 fn log_without_a_reference_has_velocities_and_a_note() {
     let folder = Folder::new(HOST_SIM);
     folder.write("short.csv", "t,counts_large\n0,0\n1e-3,1\n2e-3,1\n");
     for more in [&[][..], &["--reference", "scores"]] {
-        let arguments = [
-            "replay",
-            "short.csv",
-            "--estimator",
-            "pll",
-            "--out",
-            "v.csv",
-        ];
-        let output = folder.run(&[&arguments[..], more].concat());
+        let output = folder.run(&[&SHORT[..], more].concat());
         assert_eq!(output.status.code(), Some(0), "{more:?}");
         let notes = words(&String::from_utf8(output.stderr).unwrap());
         let said = "short.csv: no scores: 3 rows; a reference without true_omega needs at least 100; \
@@ -168,14 +170,6 @@ fn log_that_ends_before_the_scores_begin_has_velocities_and_a_note() {
     let folder = Folder::new(HOST_SIM);
     let count = |k: i32| (40.0 * (f64::from(k) * 0.01).sin()).floor();
     let rows = |rows: i32| (0..rows).map(|k| format!("{},{}\n", f64::from(k) * 2e-5, count(k)));
-    let arguments = [
-        "replay",
-        "short.csv",
-        "--estimator",
-        "pll",
-        "--out",
-        "v.csv",
-    ];
     for (length, truth, is_scored) in [
         (5000, "", false),
         (5200, "", true),
@@ -187,7 +181,7 @@ fn log_that_ends_before_the_scores_begin_has_velocities_and_a_note() {
             .collect();
         let header = if truth.is_empty() { "" } else { ",true_omega" };
         folder.write("short.csv", format!("t,counts_large{header}\n{text}"));
-        let output = folder.run(&arguments);
+        let output = folder.run(&SHORT);
         assert_eq!(output.status.code(), Some(0));
         let notes = words(&String::from_utf8(output.stderr).unwrap());
         let said = format!("no scores: {length} rows at 50000 Hz; scores begin after 0.1 s");
