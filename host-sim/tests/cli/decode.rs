@@ -5,10 +5,7 @@ use std::f64::consts::TAU;
 use crate::{Folder, HOST_SIM, json};
 
 /// 0.5 s of an encoder of 4096 counts, at 10 MHz, as Logic 2 of Saleae writes it.
-const CAPTURE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../tests/data/encoder-lines.csv"
-);
+const CAPTURE: &str = "../data/encoder-lines.csv";
 
 /// The velocity of the motion in the capture, rad/s.
 fn velocity(t: f64) -> f64 {

@@ -168,11 +168,7 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
         let errors = folder.refused(&words(arguments));
         assert!(errors.contains(said), "{errors}");
     }
-    let motor = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../tests/data/back-and-forth.csv"
-    );
-    let errors = folder.refused(&words(&format!("identify {motor} --clamped")));
+    let errors = folder.refused("identify ../data/back-and-forth.csv --clamped");
     assert!(errors.contains("no column current"), "{errors}");
 }
 

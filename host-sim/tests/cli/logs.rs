@@ -12,9 +12,9 @@ use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 use std::fs;
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
-const LOGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/logs");
+const LOGS: &str = "../data/logs";
 
 /// Number of rows of the motion, 1 ms apart.
 const ROWS: usize = 240;
@@ -62,7 +62,7 @@ fn steps(rows: &[[f64; 2]]) -> Vec<f64> {
 
 #[test]
 fn every_log_is_read_or_refused_by_a_test() {
-    let files = fs::read_dir(LOGS)
+    let files = fs::read_dir(Folder::new(HOST_SIM).path().join(LOGS))
         .unwrap()
         .map(|file| file.unwrap().file_name());
     let files: BTreeSet<_> = files.map(|name| name.into_string().unwrap()).collect();

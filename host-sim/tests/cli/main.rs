@@ -35,7 +35,7 @@ mod version;
 mod words;
 mod zwidth;
 
-use common::Folder;
+use common::{DATA, Folder};
 
 const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::{Folder, HOST_SIM, json};
 
 /// The shipped recordings.
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real");
+const DATA: &str = "../data/real";
 
 /// A list with one fine recording `f.csv` of 100 000 counts per revolution.
 const LIST: &str =
@@ -269,7 +269,7 @@ fn what_several_recordings_have_in_common_is_said_once() {
 #[test]
 fn coarse_recording_that_wraps_has_the_scores_of_the_one_that_does_not() {
     let folder = Folder::new(HOST_SIM);
-    let recording = fs::read_to_string(format!("{DATA}/../back-and-forth.csv")).unwrap();
+    let recording = folder.text("../data/back-and-forth.csv");
     folder.write("recordings.toml", LIST_COARSE);
     let run = |text: &str| {
         folder.write("c.csv", text);

@@ -4,9 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::{Folder, HOST_SIM, json};
-
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+use crate::{DATA, Folder, HOST_SIM, json};
 
 /// Counts of a shaft with 4096 counts/rev at 1 kHz that swings by two radians, for 3 s.
 fn swing() -> String {

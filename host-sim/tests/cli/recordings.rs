@@ -1,8 +1,6 @@
 //! Recordings as other tools write them, and what replay and plot say about them.
 
-use crate::{Folder, HOST_SIM, json};
-
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+use crate::{DATA, Folder, HOST_SIM, json};
 
 /// Standard error of a run that ended well, its standard output left aside.
 fn notes(folder: &Folder, arguments: &str) -> String {

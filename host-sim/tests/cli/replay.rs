@@ -4,9 +4,7 @@ use std::fs;
 use std::io::Write as _;
 use std::process::Stdio;
 
-use crate::{Folder, HOST_SIM, json};
-
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+use crate::{DATA, Folder, HOST_SIM, json};
 
 #[test]
 fn recording_of_a_real_motor_is_replayed() {
@@ -44,7 +42,7 @@ fn recording_of_a_real_motor_is_replayed() {
     let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 1501);
     // Once a window is full, the estimate is near the recording's own reference.
-    let mut recorded = csv::Reader::from_path(&recording).unwrap();
+    let mut recorded = csv::Reader::from_path(folder.path().join(&recording)).unwrap();
     let recorded: Vec<_> = recorded.records().map(Result::unwrap).collect();
     for k in [100, 700, 1500] {
         let estimate: f64 = rows[k][foaw].parse().unwrap();

@@ -1,11 +1,8 @@
 //! Recordings whose rows come at uneven times.
 
 use std::f64::consts::{PI, TAU};
-use std::fs;
 
-use crate::{Folder, HOST_SIM, json};
-
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/logs");
+use crate::{DATA, Folder, HOST_SIM, json};
 
 /// The logs of that folder which are read here.
 pub(crate) const LOGS: [&str; 3] = ["uneven.csv", "jittered.csv", "milliseconds-at-300-hz.csv"];
@@ -24,7 +21,7 @@ const VARYING: [&str; 7] = [
 ];
 
 fn log(name: &str) -> String {
-    format!("{FOLDER}/{name}")
+    format!("{DATA}/logs/{name}")
 }
 
 /// The motion of the logs: counts at `t` seconds, as README.md there states.
@@ -81,7 +78,7 @@ fn finite_difference_is_the_displacement_over_the_true_step() {
 #[test]
 fn true_steps_have_a_smaller_error_than_a_constant_period() {
     let folder = Folder::new(HOST_SIM);
-    let text = fs::read_to_string(log("jittered.csv")).unwrap();
+    let text = folder.text(&log("jittered.csv"));
     let times: Vec<f64> = text
         .lines()
         .skip(1)

@@ -45,21 +45,37 @@ impl<S: AsRef<str>> Arguments for Vec<S> {
     }
 }
 
+/// The project's `tests/data`, as seen from a [`Folder`].
+///
+/// The length of the path decides where a note is wrapped, so it must not depend on where the project lies.
+pub(crate) const DATA: &str = "../data";
+
 /// A folder in which a program runs, gone afterwards.
 pub(crate) struct Folder {
-    folder: TempDir,
+    path: PathBuf,
+    _around: TempDir,
     program: &'static str,
 }
 
 impl Folder {
-    /// An empty folder.
+    /// An empty folder, with [`DATA`] beside it.
     pub(crate) fn new(program: &'static str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        Self { folder, program }
+        let around = tempfile::tempdir().unwrap();
+        let path = around.path().join("here");
+        fs::create_dir(&path).unwrap();
+        let parents = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+        let mut data = parents.map(|parent| parent.join("tests/data"));
+        let data = data.find(|data| data.is_dir()).unwrap();
+        link(&data, &path.join(DATA));
+        Self {
+            path,
+            _around: around,
+            program,
+        }
     }
 
     pub(crate) fn path(&self) -> &Path {
-        self.folder.path()
+        &self.path
     }
 
     pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) {
@@ -146,6 +162,16 @@ impl Folder {
         assert!(files(self.path()) == before, "{arguments:?}");
         errors
     }
+}
+
+#[cfg(unix)]
+fn link(folder: &Path, name: &Path) {
+    std::os::unix::fs::symlink(folder, name).unwrap();
+}
+
+#[cfg(windows)]
+fn link(folder: &Path, name: &Path) {
+    std::os::windows::fs::symlink_dir(folder, name).unwrap();
 }
 
 /// Standard output and error of a run that must have ended with `status`.
