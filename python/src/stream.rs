@@ -93,6 +93,7 @@ fn followed(mut last: Trace, rows: Trace) -> Trace {
         current: join(last.current, rows.current),
         edges: join(last.edges, rows.edges),
         true_omega: None,
+        known: None,
         true_damping: None,
     }
 }

@@ -3,6 +3,7 @@
 mod table;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use serde::Serialize;
 
@@ -11,7 +12,7 @@ use catalogue::parameters::{Parameters, PlantKind};
 use device_files::six_digits;
 use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Row};
-use scoring::score::SKIP_S;
+use scoring::score::{SKIP_S, scored};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
@@ -181,7 +182,7 @@ pub fn recommend<'a>(
     }
     for outcome in &outcomes {
         let rate_hz = outcome.recording.trace.rate_hz;
-        let interrupted = interruptions(outcome.recording);
+        let interrupted = interruptions(outcome.recording, outcome.reference.as_ref());
         notes.extend(interrupted.map(|line| format!("{}: {line}", outcome.name)));
         if let Some(reference) = &outcome.reference {
             let limits = reference.limits(rate_hz);
@@ -249,17 +250,23 @@ fn outcome<'a>(
             FEWEST_ROWS.max(passed)
         )));
     }
-    let truth = recording.trace.true_omega.as_deref();
-    let reference = match truth {
+    let reference = match &recording.trace.true_omega {
         Some(_) => None,
         None => {
             let counts_per_rev = settings.device.stages.large.counts_per_rev;
             Some(Reference::of(recording, counts_per_rev).map_err(failed)?)
         }
     };
-    let omega = truth.or(reference.as_ref().map(|reference| &*reference.omega));
     let (device, parameters) = (settings.device, settings.parameters);
-    let replayed = replay::replay_against(omega, recording, name, kinds, device, parameters, done)?;
+    let replayed = replay::replay_against(
+        reference.as_ref(),
+        recording,
+        name,
+        kinds,
+        device,
+        parameters,
+        done,
+    )?;
     Ok(Outcome {
         name,
         recording,
@@ -325,9 +332,12 @@ fn on_log(kind: &Kind, outcome: &Outcome) -> Option<OnLog> {
         p99_rad_s: finite(row.score.p99_rad_s)?,
         delay_ms: row.score.delay_ms,
         sd_rad_s: estimate.deviation.as_ref().map(|sd| {
-            let scored = &sd[(SKIP_S * rate_hz).round() as usize..];
-            let squares: f64 = scored.iter().map(|sd| f64::from(*sd).powi(2)).sum();
-            (squares / scored.len() as f64).sqrt()
+            let known = outcome.reference.as_ref().and_then(|r| r.known.as_deref());
+            let ranges = scored(sd.len(), rate_hz, known);
+            let rows: usize = ranges.iter().map(Range::len).sum();
+            let scored = ranges.into_iter().flat_map(|range| &sd[range]);
+            let squares: f64 = scored.map(|sd| f64::from(*sd).powi(2)).sum();
+            (squares / rows as f64).sqrt()
         }),
         against: if outcome.reference.is_some() {
             "reference"

@@ -23,11 +23,13 @@ mod sweeps;
 mod thinned;
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use recordings::recording::Recording;
-use scoring::score::SKIP_S;
+use scoring::score::scored;
+use simulation::trace::Trace;
 
 use crate::table::number;
 
@@ -71,6 +73,9 @@ pub struct Reference {
     pub omega: Vec<f64>,
     /// Its standard deviation, rad/s.
     pub sd: Vec<f64>,
+    /// Whether an estimate is scored against it at each row; `None` if at all of them. It is not at rows that are no
+    /// motion of a shaft and shortly after them, unless these are most of the rows.
+    pub known: Option<Vec<bool>>,
     /// The noises with which it was computed.
     pub noises: Noises,
     /// Frequency at which the smoother halves the amplitude of a motion, on the average over the
@@ -117,6 +122,7 @@ impl Reference {
         let rows = recording.t.len();
         let period = recording.trace.period_s();
         let mut motion = Motion::of(recording);
+        let known = sections::known(&motion.rows, recording.trace.rate_hz);
         thinned::pass_over(&mut motion.rows, recording);
         let model = Model {
             jerk: noises.jerk * period.powi(5),
@@ -144,17 +150,29 @@ impl Reference {
         Self {
             omega: all().map(|s| scale * s.velocity).collect(),
             sd: all().map(|s| scale * s.variance.sqrt()).collect(),
+            known,
             noises,
             bandwidth_hz: corner / TAU / period,
         }
     }
 
-    /// Root mean square of the standard deviation from the first row that is scored, rad/s.
+    /// Root mean square of the standard deviation at the rows that are scored, rad/s.
     #[must_use]
     pub fn rms_sd(&self, rate_hz: f64) -> f64 {
-        let first = (SKIP_S * rate_hz).round() as usize;
-        let sd = &self.sd[first.min(self.sd.len())..];
-        (sd.iter().map(|sd| sd * sd).sum::<f64>() / sd.len().max(1) as f64).sqrt()
+        let ranges = scored(self.sd.len(), rate_hz, self.known.as_deref());
+        let rows: usize = ranges.iter().map(Range::len).sum();
+        let scored = ranges.into_iter().flat_map(|range| &self.sd[range]);
+        let squares: f64 = scored.map(|sd| sd * sd).sum();
+        (squares / rows.max(1) as f64).sqrt()
+    }
+
+    /// Makes `rows` of the reference the velocity against which `trace`, which has these rows, is scored.
+    ///
+    /// # Panics
+    /// If the reference does not have these rows.
+    pub fn to_trace(&self, trace: &mut Trace, rows: Range<usize>) {
+        trace.true_omega = Some(self.omega[rows.clone()].to_vec());
+        trace.known = self.known.as_ref().map(|known| known[rows].to_vec());
     }
 
     /// A sentence on the reference's error and what it does not resolve, for a recording at `rate_hz`.

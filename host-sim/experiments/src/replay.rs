@@ -59,12 +59,12 @@ pub fn replay(
     })
 }
 
-/// As [`replay`], with scores against the velocity `omega`, rad/s, instead of the true one.
+/// As [`replay`], with scores against the `reference`, if there is one, instead of the true velocity.
 ///
 /// # Errors
 /// As [`replay`].
 pub fn replay_against(
-    omega: Option<&[f64]>,
+    reference: Option<&Reference>,
     recording: &Recording,
     name: &str,
     kinds: &[&'static Kind],
@@ -73,7 +73,9 @@ pub fn replay_against(
     done: &(dyn Fn() + Sync),
 ) -> Result<Replay, Failure> {
     let mut recording = recording.clone();
-    recording.trace.true_omega = omega.map(<[f64]>::to_vec);
+    if let Some(reference) = reference {
+        reference.to_trace(&mut recording.trace, 0..recording.t.len());
+    }
     replay(&recording, name, kinds, device, parameters, done)
 }
 

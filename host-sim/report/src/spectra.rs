@@ -5,7 +5,7 @@ use super::palette::{BAND, INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
 use super::text::{rate, tactile_band};
 use super::{CaseReport, Traces};
-use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
+use scoring::score::{TACTILE_BAND_HZ, skipped};
 use scoring::spectrum::Welch;
 
 const LEFT: f64 = 68.0;
@@ -115,7 +115,7 @@ fn panel(canvas: &Canvas, plot: &Plot, curves: &[Curve], palette: &Palette) -> R
 
 fn curves(traces: &Traces) -> Vec<Curve> {
     let welch = Welch::new(traces.rate_hz);
-    let skip = (SKIP_S * traces.rate_hz).round() as usize;
+    let skip = skipped(traces.rate_hz);
     let skip = skip.min(traces.truth.len());
     let curve = |(name, estimate): &(String, Vec<f32>)| {
         let pairs = estimate[skip..].iter().zip(&traces.truth[skip..]);

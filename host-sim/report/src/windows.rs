@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use super::Traces;
-use scoring::score::SKIP_S;
+use scoring::score::skipped;
 
 /// Samples at the start of a trace that figures and scores leave out.
 fn start(traces: &Traces) -> usize {
-    (SKIP_S * traces.rate_hz).round() as usize
+    skipped(traces.rate_hz)
 }
 
 /// Window from `before_s` before to `after_s` after the start of the largest change of velocity

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::score::{HapticInterval, SKIP_S, Score, Wanted};
+use crate::score::{HapticInterval, Score, Wanted};
 use catalogue::estimators::{DIFFERENCE, Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::trace::Trace;
@@ -72,27 +72,6 @@ pub struct Estimate {
     /// Ratio of the coupler's learned damping to the assumed one at each tick; `None` if the estimator does
     /// not learn it, or if the ratio is not known.
     pub damping_ratio: Option<Vec<f32>>,
-}
-
-impl Estimate {
-    /// Share of samples within two standard deviations of the truth `omega`, rad/s.
-    #[must_use]
-    pub fn within_2_sigma(&self, omega: &[f64], rate_hz: f64) -> Option<f64> {
-        let deviations = self.deviation.as_ref()?;
-        let skip = (SKIP_S * rate_hz).round() as usize;
-        let samples = self.velocity.iter().zip(deviations).zip(omega).skip(skip);
-        let inside = |((velocity, deviation), truth): &((&f32, &f32), &f64)| {
-            is_within_2_sigma(**velocity, **deviation, **truth)
-        };
-        let scored = self.velocity.len().saturating_sub(skip);
-        (scored > 0).then(|| samples.filter(inside).count() as f64 / scored as f64)
-    }
-}
-
-/// Whether a velocity is within two of its standard deviations of the true one.
-#[must_use]
-pub fn is_within_2_sigma(velocity: f32, deviation: f32, truth: f64) -> bool {
-    (f64::from(velocity) - truth).abs() <= 2.0 * f64::from(deviation)
 }
 
 impl Candidate {

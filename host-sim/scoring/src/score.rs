@@ -6,20 +6,23 @@
 //! distance     = max(0, |estimate - w| - tolerance(w))
 //! ```
 //!
-//! The first [`SKIP_S`] seconds of a trace are not scored, because every estimator begins at rest.
+//! The first [`SKIP_S`] seconds of a trace are not scored, because every estimator begins at rest, nor
+//! are samples at which the truth is not known.
 
 mod delay;
 mod field;
 mod fields;
+mod scored;
 mod sections;
 mod transient;
 mod truth;
 
 pub use field::{Better, Field, Form, Over};
 pub use fields::{Score, Wanted};
+pub use scored::{scored, skipped};
 pub use sections::Sections;
 pub use transient::HALF_SPAN_S;
-pub use truth::Truth;
+pub use truth::{Truth, is_within_2_sigma};
 
 /// Duration at the start of a trace that is not scored, s.
 pub const SKIP_S: f64 = 0.1;

@@ -249,6 +249,7 @@ impl Run {
             current: Some(current),
             edges,
             true_omega: Some(omega),
+            known: None,
             true_damping: Some(damping),
             periods: None,
         }

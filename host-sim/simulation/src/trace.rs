@@ -34,6 +34,8 @@ pub struct Trace {
     pub edges: Option<Vec<Option<EdgeStamp>>>,
     /// True velocity of the large motor at each tick, rad/s: for scores only.
     pub true_omega: Option<Vec<f64>>,
+    /// Whether the true velocity is known at each tick; `None` if it is known at all of them: for scores only.
+    pub known: Option<Vec<bool>>,
     /// True damping of the coupler from each tick to the next, N.m.s/rad: for scores only.
     pub true_damping: Option<Vec<f64>>,
 }
@@ -81,6 +83,7 @@ impl Trace {
             current: part(self.current.as_ref(), &rows),
             edges: part(self.edges.as_ref(), &rows),
             true_omega: part(self.true_omega.as_ref(), &rows),
+            known: part(self.known.as_ref(), &rows),
             true_damping: part(self.true_damping.as_ref(), &rows),
         }
     }
@@ -116,6 +119,7 @@ mod tests {
             current: Some(vec![0.1, 0.2, 0.3]),
             edges: Some(vec![None, edge(0.5), edge(0.25)]),
             true_omega: Some(vec![7.0, 8.0, 9.0]),
+            known: Some(vec![true, false, true]),
             true_damping: None,
         };
         assert_eq!((whole.len(), whole.is_empty()), (3, false));
@@ -128,6 +132,7 @@ mod tests {
         assert_eq!(part.current, Some(vec![0.2, 0.3]));
         assert_eq!(part.edges, Some(vec![edge(0.5), edge(0.25)]));
         assert_eq!(part.true_omega, Some(vec![8.0, 9.0]));
+        assert_eq!(part.known, Some(vec![false, true]));
         assert_eq!(part.true_damping, None);
         let none = whole.rows(2..2);
         assert_eq!((none.len(), none.is_empty()), (0, true));

@@ -13,7 +13,7 @@ use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::{Parts, Survey};
-use scoring::score::SKIP_S;
+use scoring::score::{SKIP_S, skipped};
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
@@ -260,9 +260,9 @@ fn reference(
             ..Referenced::default()
         }),
         Ok(reference) => Ok(Referenced {
+            interruptions: interruptions(&recording, (!has_truth).then_some(&reference)),
             reference: Some(reference),
             without: None,
-            interruptions: interruptions(&recording),
         }),
         // Velocities alone need no reference.
         Err(why) if options.json.is_none() && !in_columns => {
@@ -277,7 +277,7 @@ fn reference(
 /// Why a recording has no scores that ends before they begin.
 fn unscored(survey: &Survey) -> Option<String> {
     let (rows, rate_hz) = (survey.rows, survey.columns.rate_hz);
-    let is_short = rows as f64 <= (SKIP_S * rate_hz).round();
+    let is_short = rows <= skipped(rate_hz);
     is_short.then(|| format!("{rows} rows at {rate_hz} Hz; scores begin after {SKIP_S} s"))
 }
 
@@ -306,7 +306,7 @@ impl Passes<'_> {
         }
         self.passed = self.passed.end..self.passed.end + rows.t.len();
         if let (Some(reference), true) = (self.reference, self.scores) {
-            rows.trace.true_omega = Some(reference.omega[self.passed.clone()].to_vec());
+            reference.to_trace(&mut rows.trace, self.passed.clone());
         }
         let bar = &self.bar;
         let board = std::mem::take(&mut rows.board);

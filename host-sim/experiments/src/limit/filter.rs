@@ -340,6 +340,7 @@ mod tests {
             current: Some((0..ticks).map(command).collect()),
             edges: None,
             true_omega: None,
+            known: None,
             true_damping: None,
             periods: None,
         };
@@ -367,6 +368,7 @@ mod tests {
                 current: None,
                 edges: None,
                 true_omega: None,
+                known: None,
                 true_damping: None,
                 periods: None,
             };

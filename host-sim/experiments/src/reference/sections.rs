@@ -5,7 +5,9 @@
 //! The smoother starts anew after both: rows before and after do not depend on each other. It passes
 //! over a single bad count.
 
+use super::Reference;
 use recordings::recording::{Recording, shown};
+use scoring::score::{SKIP_S, skipped};
 
 /// Longest interval over which the motion is followed, periods.
 pub(super) const LONGEST: f64 = 200.0;
@@ -54,14 +56,38 @@ impl Motion {
     }
 }
 
+/// Least share of the rows at which an estimate is scored. Of a counter that is bad everywhere the errors at
+/// the few other rows say nothing.
+const LEAST_KNOWN: f64 = 0.5;
+
+/// Whether an estimate is scored at each of `rows` at `rate_hz`: not at a row that is no motion of a shaft, nor
+/// within [`SKIP_S`] after it, as estimators do not know such rows and begin anew. `None` if it is scored at all
+/// of them: there is no such row, or less than [`LEAST_KNOWN`] of the rows would be left.
+pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
+    let passed = skipped(rate_hz).max(1);
+    let mut since = passed;
+    let is_known = |row: &Row| {
+        since = match row {
+            Row::Next => since + 1,
+            Row::Jumped | Row::Bad => 0,
+        };
+        since >= passed
+    };
+    let known: Vec<_> = rows.iter().map(is_known).collect();
+    let number = known.iter().filter(|known| **known).count();
+    let is_part = number < rows.len() && number as f64 >= LEAST_KNOWN * rows.len() as f64;
+    is_part.then_some(known)
+}
+
 /// Times that a message lists.
 const LISTED: usize = 8;
 
-/// One line on the rows of `recording` that are no motion of a shaft; `None` if there are none.
+/// One line on the rows of `recording` that are no motion of a shaft; `None` if there are none. Its scores are
+/// against `reference`, or against a true velocity.
 ///
-/// Estimators do not know them: one such row can decide which of them has the smallest error.
+/// Estimators do not know these rows: one of them can decide which estimator has the smallest error.
 #[must_use]
-pub fn interruptions(recording: &Recording) -> Option<String> {
+pub fn interruptions(recording: &Recording, reference: Option<&Reference>) -> Option<String> {
     let rows = rows(recording);
     let remedies = [
         (Row::Bad, "is bad", "delete these rows"),
@@ -82,12 +108,12 @@ pub fn interruptions(recording: &Recording) -> Option<String> {
         (!times.is_empty()).then(|| format!("{what} at t = {listed} s{more}: {remedy}"))
     });
     let said: Vec<_> = said.collect();
-    (!said.is_empty()).then(|| {
-        format!(
-            "counts_large {}; all scores contain what is no motion of a shaft",
-            said.join(", and ")
-        )
-    })
+    let is_left_out = reference.is_some_and(|reference| reference.known.is_some());
+    let scores = match is_left_out {
+        true => format!("scores leave out these rows and {SKIP_S} s after each"),
+        false => "all scores contain what is no motion of a shaft".to_owned(),
+    };
+    (!said.is_empty()).then(|| format!("counts_large {}; {scores}", said.join(", and ")))
 }
 
 /// What each row of `recording` says of the motion.
@@ -236,16 +262,16 @@ mod tests {
     #[test]
     fn interruptions_are_named_with_their_times_and_remedies() {
         let mut counts = steady();
-        assert_eq!(interruptions(&recording(&counts)), None);
+        assert_eq!(interruptions(&recording(&counts), None), None);
         let scores = "all scores contain what is no motion of a shaft";
         for (k, said) in [(40, "0.04"), (30, "0.03, 0.04"), (50, "0.03, 0.04, 0.05")] {
             counts[k] += 1 << 20;
-            let line = interruptions(&recording(&counts)).unwrap();
+            let line = interruptions(&recording(&counts), None).unwrap();
             let said = format!("counts_large is bad at t = {said} s: delete these rows; {scores}");
             assert_eq!(line, said);
         }
         counts[60..].iter_mut().for_each(|count| *count += 1 << 20);
-        let line = interruptions(&recording(&counts)).unwrap();
+        let line = interruptions(&recording(&counts), None).unwrap();
         let said = "0.05 s: delete these rows, and jumps at t = 0.06 s: cut the log there; all";
         assert!(line.contains(said), "{line}");
         let set = recording(
@@ -256,7 +282,35 @@ mod tests {
                 .collect::<Vec<_>>(),
         );
         let said = format!("counts_large jumps at t = 0.01 s: cut the log there; {scores}");
-        assert_eq!(interruptions(&set), Some(said));
+        assert_eq!(interruptions(&set, None), Some(said));
+    }
+
+    #[test]
+    fn rows_that_are_no_motion_and_a_tenth_of_a_second_after_are_not_known() {
+        let rows = |marked: &[usize]| -> Vec<_> {
+            let row = |k| match marked.iter().position(|at| *at == k) {
+                None => Row::Next,
+                Some(nth) if nth % 2 == 0 => Row::Bad,
+                Some(_) => Row::Jumped,
+            };
+            (0..40).map(row).collect()
+        };
+        let unknown = |marked: &[usize]| {
+            let known = known(&rows(marked), 50.0)?;
+            Some((0..40).filter(|k| !known[*k]).collect::<Vec<_>>())
+        };
+        assert_eq!(unknown(&[]), None);
+        assert_eq!(
+            unknown(&[0, 9]),
+            Some(vec![0, 1, 2, 3, 4, 9, 10, 11, 12, 13])
+        );
+        assert_eq!(
+            unknown(&[7, 8, 38]),
+            Some(vec![7, 8, 9, 10, 11, 12, 38, 39])
+        );
+        // Of 40 rows 20 are left, and 19.
+        assert_eq!(unknown(&[0, 5, 10, 15]).map(|rows| rows.len()), Some(20));
+        assert_eq!(unknown(&[0, 5, 10, 15, 39]), None);
     }
 
     #[test]
@@ -265,11 +319,11 @@ mod tests {
         for k in 1..=9 {
             counts[10 * k] += 1 << 20;
         }
-        let line = interruptions(&recording(&counts)).unwrap();
+        let line = interruptions(&recording(&counts), None).unwrap();
         let said = "t = 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08 s and at 1 row more: delete";
         assert!(line.contains(said), "{line}");
         counts[95] += 1 << 20;
-        let line = interruptions(&recording(&counts)).unwrap();
+        let line = interruptions(&recording(&counts), None).unwrap();
         assert!(line.contains("0.08 s and at 2 rows more: delete"), "{line}");
     }
 

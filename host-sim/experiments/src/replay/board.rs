@@ -3,8 +3,7 @@
 use recordings::health;
 use recordings::recording::BoardColumns;
 use recordings::telemetry::LearnedLine;
-use scoring::evaluation::is_within_2_sigma;
-use scoring::score::SKIP_S;
+use scoring::score::{is_within_2_sigma, skipped};
 use simulation::device::Device;
 use simulation::trace::Trace;
 
@@ -34,7 +33,7 @@ impl BoardSummary {
         ) else {
             return;
         };
-        let skip = ((SKIP_S * trace.rate_hz).round() as usize).saturating_sub(self.rows);
+        let skip = skipped(trace.rate_hz).saturating_sub(self.rows);
         self.rows += velocity.len();
         let omega = &omega[omega.len().saturating_sub(velocity.len())..];
         for ((velocity, sigma), omega) in velocity.iter().zip(sigma).zip(omega).skip(skip) {

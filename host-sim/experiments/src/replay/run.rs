@@ -7,7 +7,7 @@ use catalogue::estimators::{Kind, Lack, Setup, State};
 use catalogue::parameters::{Parameters, PlantKind};
 use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Evaluation, Heading, Row, Scoring};
-use scoring::score::{SKIP_S, Wanted};
+use scoring::score::{Wanted, skipped};
 use simulation::device::Device;
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -23,7 +23,7 @@ pub fn section_rows(rows: usize) -> usize {
 
 /// A run of several estimators over the sections of one recording.
 pub struct Run {
-    /// The rows of the latest section: the last [`SKIP_S`] of the section before it, and its own.
+    /// The rows of the latest section: the last [`SKIP_S`](scoring::score::SKIP_S) of the section before it, and its own.
     pub section: Recording,
     /// Number of rows of the section before it.
     pub before: usize,
@@ -103,9 +103,9 @@ impl Run {
     /// # Errors
     /// [`Failure::Input`] if the true velocity is not finite.
     pub fn add(&mut self, rows: Recording, done: &(dyn Fn() + Sync)) -> Result<(), Failure> {
-        let skipped = (SKIP_S * rows.trace.rate_hz).round() as usize;
+        let before = skipped(rows.trace.rate_hz);
         // A row before the section is needed for the current that acts until its first tick.
-        let kept = skipped.max(1).min(self.section.t.len());
+        let kept = before.max(1).min(self.section.t.len());
         let number = rows.t.len();
         match self.passed {
             0 => self.section = rows,

@@ -13,7 +13,7 @@
 use serde::Serialize;
 
 use scoring::percentile;
-use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
+use scoring::score::{TACTILE_BAND_HZ, skipped};
 use scoring::score_fields;
 use scoring::spectrum::Welch;
 use simulation::device::Device;
@@ -48,7 +48,7 @@ impl Fingertip {
 }
 
 score_fields! {
-    /// Scores of a parasitic force after the first [`SKIP_S`] seconds; `None` for a shorter series.
+    /// Scores of a parasitic force after the first [`SKIP_S`](scoring::score::SKIP_S) seconds; `None` for a shorter series.
     /// A force that is not finite counts as infinite.
     pub struct Parasitic {
         /// Root mean square, mN.
@@ -83,7 +83,7 @@ impl Parasitic {
     /// ```
     #[must_use]
     pub fn of(force_mn: &[f64], rate_hz: f64, fingertip: &Fingertip) -> Self {
-        let skip = ((SKIP_S * rate_hz).round() as usize).min(force_mn.len());
+        let skip = skipped(rate_hz).min(force_mn.len());
         let scored = &force_mn[skip..];
         if scored.is_empty() {
             return Self::default();

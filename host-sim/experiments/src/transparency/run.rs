@@ -251,6 +251,7 @@ impl Recorder {
                 current: Some(Vec::with_capacity(prepared.ticks)),
                 edges: None,
                 true_omega: Some(Vec::with_capacity(prepared.ticks)),
+                known: None,
                 true_damping: None,
                 periods: None,
             },

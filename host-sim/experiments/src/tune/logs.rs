@@ -45,7 +45,8 @@ pub struct LogPlan {
     searches: Vec<LogSearch>,
     notes: Vec<String>,
     #[serde(skip)]
-    tracks: Vec<Track>,
+    /// The recordings, with a velocity that estimates are compared with.
+    tracks: Vec<Trace>,
 }
 
 /// A recording as messages and shards know it.
@@ -88,13 +89,6 @@ pub struct LogTuned {
     pub notes: Vec<String>,
 }
 
-/// A recording and the velocity that estimates are compared with, rad/s.
-#[derive(Debug)]
-struct Track {
-    trace: Trace,
-    omega: Vec<f64>,
-}
-
 impl LogPlan {
     /// The searches of those of the estimators `kinds`, which must have parameters, that run on all
     /// recordings. They begin with the parameters `before`.
@@ -123,15 +117,13 @@ impl LogPlan {
             tracks: Vec::new(),
         };
         for (log, recording) in recordings {
-            let interrupted = interruptions(&recording);
-            (plan.notes).extend(interrupted.map(|line| format!("{}: {line}", log.name)));
             let (track, said) = track(&log.name, recording, rate_hz, &plan.device)?;
             plan.tracks.push(track);
             plan.notes.extend(said);
             plan.logs.push(log);
         }
         for kind in kinds {
-            let lack = plan.tracks.iter().find_map(|track| kind.lack(&track.trace));
+            let lack = plan.tracks.iter().find_map(|track| kind.lack(track));
             let why = match lack {
                 None => {
                     plan.searches.push(LogSearch {
@@ -249,13 +241,14 @@ impl Experiment for LogPlan {
     }
 }
 
-/// The recording's track, with a note if the velocity is not in the recording.
+/// The columns of the recording with a velocity to compare with, and notes on rows that are no motion, and if
+/// the velocity is not in the recording.
 fn track(
     name: &str,
-    recording: Recording,
+    mut recording: Recording,
     rate_hz: f64,
     device: &Device,
-) -> Result<(Track, Option<String>), Failure> {
+) -> Result<(Trace, Vec<String>), Failure> {
     let trace = &recording.trace;
     let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
     let seconds = trace.len() as f64 / trace.rate_hz;
@@ -266,35 +259,37 @@ fn track(
             FEWEST_BLOCKS * BLOCK_S
         ));
     }
-    let (omega, note) = match &trace.true_omega {
-        Some(omega) => (omega.clone(), None),
+    let reference = match &trace.true_omega {
+        Some(_) => None,
         None => match Reference::of(&recording, device.stages.large.counts_per_rev) {
             Err(why) => return refused(format!("no column true_omega, and no reference: {why}")),
-            Ok(reference) => {
-                let sd = reference.rms_sd(rate_hz);
-                let note = format!(
-                    "{name}: no column true_omega; errors are those against a smoother of the log itself, \
-                     whose own standard deviation is {} rad/s",
-                    number(Some(sd))
-                );
-                (reference.omega, Some(note))
-            }
+            Ok(reference) => Some(reference),
         },
     };
-    let trace = recording.trace;
-    Ok((Track { trace, omega }, note))
+    let interrupted = interruptions(&recording, reference.as_ref());
+    let mut notes: Vec<_> = interrupted
+        .map(|line| format!("{name}: {line}"))
+        .into_iter()
+        .collect();
+    if let Some(reference) = reference {
+        notes.push(format!(
+            "{name}: no column true_omega; errors are those against a smoother of the log itself, whose own \
+             standard deviation is {} rad/s",
+            number(Some(reference.rms_sd(rate_hz)))
+        ));
+        let rows = 0..recording.t.len();
+        reference.to_trace(&mut recording.trace, rows);
+    }
+    Ok((recording.trace, notes))
 }
 
 /// RMS errors in the tuned and in the held-out half, rad/s; infinite if the estimator's design refuses
 /// the values or an estimate is not finite.
-fn errors(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> [f64; 2] {
+fn errors(kind: &Kind, setup: &Setup, tracks: &[Trace], values: &Values) -> [f64; 2] {
     let Ok(estimator) = kind.build(setup, values) else {
         return [f64::INFINITY; 2];
     };
-    let of_track = |track: &Track| {
-        let velocity = estimator.run(&track.trace);
-        halves(&velocity, &track.omega, setup.rate.0)
-    };
+    let of_track = |track: &Trace| halves(&estimator.run(track), track);
     let sums: Vec<_> = tracks.par_iter().map(of_track).collect();
     [0, 1].map(|half| {
         let squares: f64 = sums.iter().map(|sums| sums[half].0).sum();
@@ -307,16 +302,19 @@ fn errors(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> [f64
 }
 
 /// Sum of the squared errors and number of the scored samples of each half.
-fn halves(velocity: &[f32], omega: &[f64], rate_hz: f64) -> [(f64, f64); 2] {
-    let [block, warm_up] = [BLOCK_S, WARM_UP_S].map(|s| ((s * rate_hz).round() as usize).max(1));
+fn halves(velocity: &[f32], track: &Trace) -> [(f64, f64); 2] {
+    let rows = |s: f64| ((s * track.rate_hz).round() as usize).max(1);
+    let [block, warm_up] = [BLOCK_S, WARM_UP_S].map(rows);
+    let omega = track.true_omega.as_deref().unwrap_or_default();
+    let is_scored = |k: &usize| {
+        let is_known = track.known.as_ref().is_none_or(|known| known[*k]);
+        is_known && k % block >= warm_up
+    };
     let mut halves = [(0.0, 0.0); 2];
-    let blocks = velocity.chunks(block).zip(omega.chunks(block));
-    for (number, (velocity, omega)) in blocks.enumerate() {
-        let (squares, samples) = &mut halves[number % 2];
-        for (velocity, omega) in velocity.iter().zip(omega).skip(warm_up) {
-            *squares += (f64::from(*velocity) - omega).powi(2);
-            *samples += 1.0;
-        }
+    for k in (0..velocity.len()).filter(is_scored) {
+        let (squares, samples) = &mut halves[k / block % 2];
+        *squares += (f64::from(velocity[k]) - omega[k]).powi(2);
+        *samples += 1.0;
     }
     halves
 }
@@ -334,6 +332,15 @@ mod tests {
         let omega: Vec<_> = (0..30)
             .map(|k| if k / 10 == 1 { 3.0 } else { 0.0 })
             .collect();
-        assert_eq!(halves(&velocity, &omega, 10.0), [(18.0, 18.0), (36.0, 9.0)]);
+        let mut track = Trace {
+            rate_hz: 10.0,
+            true_omega: Some(omega),
+            ..Trace::default()
+        };
+        assert_eq!(halves(&velocity, &track), [(18.0, 18.0), (36.0, 9.0)]);
+        // The first of these is not scored anyway.
+        let known = (0..30).map(|k| ![10, 11, 13, 29].contains(&k));
+        track.known = Some(known.collect());
+        assert_eq!(halves(&velocity, &track), [(17.0, 17.0), (28.0, 7.0)]);
     }
 }

@@ -4,11 +4,11 @@
 use catalogue::constant_error::{Constant, ConstantError};
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
-use experiments::compare::{Case, setup_of, trace};
+use experiments::compare::{Case, interval, setup_of, trace};
 use measured::digits::rounded;
 use measured::tables::CONFIDENCE;
 use scoring::evaluation::Evaluation;
-use scoring::score::SKIP_S;
+use scoring::score::{Truth, Wanted, skipped};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName::{self, FreeAir, Step, Stochastic, Texture, Track, Wall};
 
@@ -34,10 +34,12 @@ fn calibration(
     let evaluation = Evaluation::new(&[kind], &Parameters::default(), &setup, case.plant).unwrap();
     let estimate = &evaluation.estimates(&trace)[0];
     let omega = trace.true_omega.as_ref().unwrap();
-    let share = estimate.within_2_sigma(omega, rate_hz).unwrap();
-    let skip = (SKIP_S * rate_hz) as usize;
+    let deviation = estimate.deviation.as_ref().unwrap();
+    let truth = Truth::new(omega, rate_hz, interval(&device), Wanted::NONE).unwrap();
+    let share = truth.within_2_sigma(&estimate.velocity, deviation).unwrap();
+    let skip = skipped(rate_hz);
     let square = |x: f64| x * x;
-    let sigma = estimate.deviation.as_ref().unwrap()[skip..].iter();
+    let sigma = deviation[skip..].iter();
     let sigma: f64 = sigma.map(|s| square(f64::from(*s))).sum();
     let errors = estimate.velocity[skip..].iter().zip(&omega[skip..]);
     let errors: f64 = errors.map(|(v, w)| square(f64::from(*v) - w)).sum();

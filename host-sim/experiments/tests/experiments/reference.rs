@@ -12,7 +12,7 @@ use measured::digits::{rounded, within_a_tenth};
 use measured::tables::REFERENCE;
 use recordings::recording::Recording;
 use scoring::evaluation::Evaluation;
-use scoring::score::SKIP_S;
+use scoring::score::skipped;
 use simulation::device::Device;
 
 const RECORDINGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real");
@@ -33,7 +33,7 @@ fn settings() -> Settings {
 
 /// The scored samples.
 fn scored<T>(samples: &[T]) -> &[T] {
-    &samples[(SKIP_S * RATE_HZ) as usize..]
+    &samples[skipped(RATE_HZ)..]
 }
 
 /// Root mean square of `a - b` over the scored samples.

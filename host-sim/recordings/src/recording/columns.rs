@@ -324,6 +324,7 @@ impl<'a> Columns<'a> {
                 current: any(&[Column::Current, Column::CurrentMeasured]).then_some(current),
                 edges: any(&[Column::EdgeTick]).then_some(edges),
                 true_omega: any(&[Column::TrueOmega]).then_some(true_omega),
+                known: None,
                 true_damping: None,
                 periods: None,
             },

@@ -16,6 +16,7 @@ impl Recording {
         add(&mut trace.edges, &mut added.edges);
         add(&mut trace.periods, &mut added.periods);
         add(&mut trace.true_omega, &mut added.true_omega);
+        add(&mut trace.known, &mut added.known);
         self.board.append(other.board);
     }
 
@@ -38,6 +39,7 @@ impl Recording {
                 edges: front(&mut trace.edges, rows),
                 periods: front(&mut trace.periods, rows),
                 true_omega: front(&mut trace.true_omega, rows),
+                known: front(&mut trace.known, rows),
                 true_damping: front(&mut trace.true_damping, rows),
             },
         }

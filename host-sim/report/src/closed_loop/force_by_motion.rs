@@ -9,7 +9,7 @@ use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Outcome, Signals};
-use scoring::score::{HALF_SPAN_S, SKIP_S};
+use scoring::score::{HALF_SPAN_S, skipped};
 use simulation::device::Device;
 
 /// Bins across each axis, and the least share of the ticks that a bin needs to be drawn.
@@ -142,7 +142,7 @@ fn acceleration(signals: &Signals, rate_hz: f64) -> Vec<f64> {
 /// RMS of the parasitic force in even bins of `x` from `-widest` to `widest`.
 fn bins(x: &[f64], signals: &Signals, rate_hz: f64, widest: f64) -> Vec<(f64, f64)> {
     let mut sums = [(0_usize, 0.0_f64); BINS];
-    let skip = (SKIP_S * rate_hz).round() as usize;
+    let skip = skipped(rate_hz);
     let forces = signals.felt_mn.iter().zip(&signals.wanted_mn);
     for (x, (felt, wanted)) in x.iter().zip(forces).skip(skip) {
         let part = (x / widest + 1.0) / 2.0;

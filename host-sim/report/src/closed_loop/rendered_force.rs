@@ -11,7 +11,7 @@ use super::{ClosedLoop, best, find, uses_velocity};
 use catalogue::estimators::DIFFERENCE;
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Outcome, REFERENCE, Run, Signals};
-use scoring::score::SKIP_S;
+use scoring::score::skipped;
 
 /// One figure for each scene but `off`, in the order of the scenes.
 pub(super) fn figures(
@@ -122,7 +122,7 @@ fn chosen(outcome: &Outcome) -> Vec<&Run> {
 /// Start of the window in which the commanded force covers the widest range, s.
 fn busiest(signals: &Signals, rate_hz: f64, span_s: f64) -> Option<f64> {
     let span = (span_s * rate_hz).round() as usize;
-    let first = (SKIP_S * rate_hz).round() as usize;
+    let first = skipped(rate_hz);
     let last = signals.wanted_mn.len().checked_sub(span + 2)?;
     let range = |from: usize| {
         let window = &signals.wanted_mn[from..=from + span];

@@ -9,7 +9,7 @@ use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::Signals;
-use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
+use scoring::score::{TACTILE_BAND_HZ, skipped};
 use scoring::spectrum::Welch;
 
 /// Amplitude spectral density for each velocity source, rates side by side; `None` without scene
@@ -73,7 +73,7 @@ pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<Sv
 }
 
 fn density(signals: &Signals, rate_hz: f64) -> Option<Vec<(f64, f64)>> {
-    let skip = (SKIP_S * rate_hz).round() as usize;
+    let skip = skipped(rate_hz);
     let forces = signals.felt_mn.iter().zip(&signals.wanted_mn);
     let parasitic: Vec<f64> = (forces.skip(skip))
         .map(|(felt, wanted)| f64::from(felt - wanted))

@@ -43,7 +43,8 @@ impl Scoring {
         estimates: &[Estimate],
     ) -> Result<(), Failure> {
         let omega = trace.true_omega.as_deref().unwrap_or_default();
-        let truth = Truth::new(omega, trace.rate_hz, self.interval, self.wanted)
+        let known = trace.known.as_deref();
+        let truth = Truth::where_known(omega, known, trace.rate_hz, self.interval, self.wanted)
             .map_err(|error| Failure::Input(format!("{}: {error}", self.heading.scenario)))?;
         if self.estimates.is_empty() {
             let named = |estimate: &Estimate| (estimate.estimator, Sections::default());
@@ -59,9 +60,10 @@ impl Scoring {
                 self.reference
                     .add(&truth, &estimate.velocity, score, several);
             }
-            let within = || estimate.within_2_sigma(omega, trace.rate_hz);
+            let deviation = estimate.deviation.as_ref().filter(|_| self.wanted.within);
+            let within = |sd: &Vec<f32>| truth.within_2_sigma(&estimate.velocity, sd);
             let score = Score {
-                within_2_sigma: self.wanted.within.then(within).flatten(),
+                within_2_sigma: deviation.and_then(within),
                 ..score
             };
             sections.add(&truth, &estimate.velocity, score, several);

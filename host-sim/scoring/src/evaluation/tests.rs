@@ -1,6 +1,7 @@
 //! Tests of the evaluation of a trace.
 
 use super::*;
+use crate::score::{Truth, is_within_2_sigma};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::simulate;
@@ -45,25 +46,21 @@ fn learned_damping_is_that_of_the_estimate_or_of_a_run() {
 
 #[test]
 fn within_2_sigma_is_the_share_after_the_start() {
-    let estimate = Estimate {
-        estimator: "pll",
-        velocity: vec![9.0, 1.0, 1.0, 1.0, 1.0],
-        deviation: Some(vec![0.0, 0.5, 0.5, 0.4, 0.0]),
-        damping_ratio: None,
+    let velocity = [9.0, 1.0, 1.0, 1.0, 1.0];
+    let deviation = [0.0, 0.5, 0.5, 0.4, 0.0];
+    let omega = [0.0, 2.0, 2.1, 1.5, 1.0];
+    let interval = HapticInterval::new(0.1, 0.01, 0.07, 1e-3);
+    let share = |rate_hz, known: Option<&[bool]>| {
+        let truth = Truth::where_known(&omega, known, rate_hz, interval, Wanted::NONE).unwrap();
+        truth.within_2_sigma(&velocity, &deviation)
     };
     // At 10 Hz the first 0.1 s, which are not scored, are one sample.
-    let truth = [0.0, 2.0, 2.1, 1.5, 1.0];
-    assert_eq!(estimate.within_2_sigma(&truth, 10.0), Some(0.75));
+    assert_eq!(share(10.0, None), Some(0.75));
     assert_eq!(
-        estimate.within_2_sigma(&truth, 50.0),
-        None,
-        "none is scored"
+        share(10.0, Some(&[true, true, false, true, false])),
+        Some(1.0)
     );
-    let without_deviation = Estimate {
-        deviation: None,
-        ..estimate
-    };
-    assert_eq!(without_deviation.within_2_sigma(&truth, 10.0), None);
+    assert_eq!(share(50.0, None), None, "none is scored");
 }
 
 #[test]
@@ -133,7 +130,9 @@ fn rows_are_those_of_the_estimates_relative_to_finite_difference() {
     let (found, estimates) = evaluated(&kinds, &trace);
     let omega = trace.true_omega.as_deref().unwrap();
     for (row, estimate) in found.iter().zip(&estimates) {
-        let within = estimate.within_2_sigma(omega, 1000.0);
+        let truth = Truth::new(omega, 1000.0, interval, Wanted::NONE).unwrap();
+        let deviation = estimate.deviation.as_ref();
+        let within = deviation.and_then(|sd| truth.within_2_sigma(&estimate.velocity, sd));
         assert_eq!(row.score.within_2_sigma, within, "{}", row.estimator);
     }
     let reports = |row: &Row| row.score.within_2_sigma.is_some();

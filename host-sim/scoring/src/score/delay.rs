@@ -1,32 +1,47 @@
 //! The delay of an estimate against the true velocity.
 
+use std::ops::Range;
+
 /// Peak-to-peak value of the true velocity below which no delay is computed, rad/s.
 const MOVES_RAD_S: f64 = 1e-3;
 
 /// Delay of the estimate against the truth, samples; negative if the estimate leads. It is the
 /// shift with the least mean square error, refined below one sample by a parabola.
 ///
-/// Every shift compares the estimates `margin..len - margin`. The search begins at zero, doubles
+/// Every shift compares the estimates of `scored` in `margin..len - margin`. The search begins at zero, doubles
 /// the shift in the direction of the smaller error, and then halves the bracket of the minimum. The
 /// result is `None` if the truth does not move, if the trace is shorter than three margins or if
 /// the best shift is not below the margin.
-pub(super) fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<f64> {
+pub(super) fn samples(
+    truth: &[f64],
+    estimate: &[f32],
+    margin: usize,
+    scored: &[Range<usize>],
+) -> Option<f64> {
     if margin < 2 || truth.len() < 3 * margin {
         return None;
     }
-    let scored = margin..truth.len() - margin;
-    let (low, high) = truth[scored.clone()]
+    let inner = |range: &Range<usize>| range.start.max(margin)..range.end.min(truth.len() - margin);
+    let scored: Vec<_> = scored
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &w| {
-            (low.min(w), high.max(w))
-        });
+        .map(inner)
+        .filter(|range| !range.is_empty())
+        .collect();
+    let samples: usize = scored.iter().map(Range::len).sum();
+    let truths = || scored.iter().flat_map(|range| &truth[range.clone()]);
+    let (low, high) = truths().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &w| {
+        (low.min(w), high.max(w))
+    });
+    // No sample has a span of minus infinity.
     if high - low < MOVES_RAD_S {
         return None;
     }
-    let estimate = &estimate[scored.clone()];
     let cost = |shift: isize| {
-        let start = margin.wrapping_add_signed(-shift);
-        mean_square_error(estimate, &truth[start..start + estimate.len()])
+        let squares = scored.iter().map(|range| {
+            let start = range.start.wrapping_add_signed(-shift);
+            square_error(&estimate[range.clone()], &truth[start..start + range.len()])
+        });
+        squares.sum::<f64>() / samples as f64
     };
     let limit = margin as isize;
 
@@ -90,8 +105,8 @@ fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     }
 }
 
-/// Mean square difference. Independent sums let the compiler use vector instructions.
-fn mean_square_error(estimate: &[f32], truth: &[f64]) -> f64 {
+/// Sum of the squared differences. Independent sums let the compiler use vector instructions.
+fn square_error(estimate: &[f32], truth: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (estimates, estimate_rest) = estimate.as_chunks::<LANES>();
     let (truths, truth_rest) = truth.as_chunks::<LANES>();
@@ -104,13 +119,19 @@ fn mean_square_error(estimate: &[f32], truth: &[f64]) -> f64 {
     }
     let rest = estimate_rest.iter().zip(truth_rest);
     let rest: f64 = rest.map(|(&e, &w)| (f64::from(e) - w).powi(2)).sum();
-    (sums.iter().sum::<f64>() + rest) / estimate.len() as f64
+    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]
+#[expect(clippy::single_range_in_vec_init, reason = "one range is meant")]
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
+
+    /// The delay where all samples but a margin are scored.
+    fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<f64> {
+        super::samples(truth, estimate, margin, &[margin..truth.len()])
+    }
 
     fn wave(at: f64) -> f64 {
         3.0 * (TAU * at / 400.0).sin() + 2.0 * (TAU * at / 950.0).cos()
@@ -176,14 +197,29 @@ mod tests {
     }
 
     #[test]
-    fn every_sample_counts_in_the_mean_square_error() {
+    fn every_sample_counts_in_the_square_error() {
         // 1 + 4 + ... + 361 = 19 * 20 * 39 / 6.
         let truth: Vec<f64> = (1..20).map(f64::from).collect();
-        assert_eq!(mean_square_error(&[0.0; 19], &truth), 130.0);
+        assert_eq!(square_error(&[0.0; 19], &truth), 19.0 * 130.0);
         assert_eq!(
-            mean_square_error(&[0.0; 2], &truth[17..]),
-            (18.0 * 18.0 + 19.0 * 19.0) / 2.0
+            square_error(&[0.0; 2], &truth[17..]),
+            18.0 * 18.0 + 19.0 * 19.0
         );
+    }
+
+    /// A part that is not scored has another delay.
+    #[test]
+    fn delay_is_that_of_the_scored_samples() {
+        let (truth, mut estimate) = lagging(4.0, 4000);
+        let (_, later) = lagging(40.0, 4000);
+        estimate[1000..2500].copy_from_slice(&later[1000..2500]);
+        let found = super::samples(&truth, &estimate, 100, &[100..1000, 2500..4000]).unwrap();
+        assert!((found - 4.0).abs() < 2e-3, "{found}");
+        let found = super::samples(&truth, &estimate, 100, &[1000..2500]).unwrap();
+        assert!((found - 40.0).abs() < 2e-3, "{found}");
+        assert_eq!(super::samples(&truth, &estimate, 100, &[]), None);
+        // None of these is farther than the margin from the end.
+        assert_eq!(super::samples(&truth, &estimate, 100, &[3901..3990]), None);
     }
 
     #[test]

@@ -47,7 +47,7 @@ impl Sections {
             slope: truth.slope(),
         });
         if several && score.p99_rad_s.is_some() {
-            for error in truth.scored_errors(estimate) {
+            for error in truth.errors(estimate) {
                 let class = (error.abs() as f32).to_bits() >> SHARED_BITS;
                 *self.errors.entry(class).or_default() += 1;
             }
@@ -79,7 +79,7 @@ impl Sections {
             max_rad_s: largest.reduce(f64::max),
             p99_rad_s: match non_finite {
                 0 => self.percentile(0.99),
-                _ => sections[0].score.p99_rad_s.map(|_| f64::INFINITY),
+                _ => (sections.iter().find_map(|part| part.score.p99_rad_s)).map(|_| f64::INFINITY),
             },
             distance_rad_s: mean(|s| s.distance_rad_s, by_samples, 1),
             distance_transient_rad_s: mean(
@@ -117,7 +117,7 @@ impl Sections {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::{HapticInterval, SKIP_S, Wanted};
+    use crate::score::{HapticInterval, Wanted, skipped};
 
     /// A truth with transients and an estimate with a delay of 3 samples and noise.
     fn signals(samples: usize) -> (Vec<f64>, Vec<f32>) {
@@ -146,7 +146,7 @@ mod tests {
         let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
         let of = |truth| Truth::new(truth, rate_hz, interval, Wanted::ALL).unwrap();
         let whole = of(&truth).score(&estimate);
-        let before = (SKIP_S * rate_hz) as usize;
+        let before = skipped(rate_hz);
         let mut sections = Sections::default();
         let mut one = Sections::default();
         one.add(&of(&truth), &estimate, whole, false);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{HapticInterval, SKIP_S, Score, TACTILE_BAND_HZ, Wanted, delay, transient};
+use super::{HapticInterval, Score, TACTILE_BAND_HZ, Wanted, delay, scored, skipped, transient};
 use crate::percentile;
 use crate::spectrum::Welch;
 
@@ -12,12 +12,16 @@ pub struct Truth<'a> {
     rate_hz: f64,
     interval: HapticInterval,
     wanted: Wanted,
-    /// First sample that is scored.
+    /// First sample that may be scored.
     skip: usize,
+    /// Ranges of samples that are scored, in order.
+    ranges: Vec<Range<usize>>,
+    /// Their number.
+    scored: usize,
     /// [`HapticInterval::tolerance`] of every sample from `skip` on; empty if no selected score
     /// needs it.
     tolerance: Vec<f64>,
-    /// Ranges of samples in a transient, counted from the start of the trace, from `skip` on.
+    /// Ranges of scored samples in a transient.
     transients: Vec<Range<usize>>,
     variation: f64,
     welch: Option<Welch>,
@@ -34,6 +38,23 @@ impl<'a> Truth<'a> {
         interval: HapticInterval,
         wanted: Wanted,
     ) -> Result<Self, String> {
+        Self::where_known(omega, None, rate_hz, interval, wanted)
+    }
+
+    /// As [`Truth::new`]; samples at which the velocity is not `known` are not scored.
+    ///
+    /// # Errors
+    /// As [`Truth::new`].
+    ///
+    /// # Panics
+    /// If `known` has fewer values than `omega`.
+    pub fn where_known(
+        omega: &'a [f64],
+        known: Option<&[bool]>,
+        rate_hz: f64,
+        interval: HapticInterval,
+        wanted: Wanted,
+    ) -> Result<Self, String> {
         if !(rate_hz > 0.0 && rate_hz.is_finite()) {
             return Err(format!("sample rate {rate_hz} Hz: must be positive"));
         }
@@ -43,9 +64,10 @@ impl<'a> Truth<'a> {
                 "true velocity of sample {at} is {omega}: must be finite"
             ));
         }
-        let skip = ((SKIP_S * rate_hz).round() as usize).min(omega.len());
-        let scored = &omega[skip..];
+        let ranges = scored(omega.len(), rate_hz, known);
+        let skip = ranges.first().map_or(omega.len(), |range| range.start);
         let by_distance = wanted.distance || wanted.distance_transient || wanted.outside;
+        let later = &omega[skip..];
         Ok(Self {
             omega,
             rate_hz,
@@ -53,26 +75,28 @@ impl<'a> Truth<'a> {
             wanted,
             skip,
             tolerance: if by_distance {
-                scored.iter().map(|&w| interval.tolerance(w)).collect()
+                later.iter().map(|&w| interval.tolerance(w)).collect()
             } else {
                 Vec::new()
             },
             transients: if wanted.distance_transient {
-                transient::ranges(omega, rate_hz, skip)
+                common(&transient::ranges(omega, rate_hz, skip), &ranges)
             } else {
                 Vec::new()
             },
             variation: if wanted.chatter {
-                scored.windows(2).map(|w| (w[1] - w[0]).abs()).sum()
+                let steps = neighbours(omega, &ranges);
+                steps.map(|(before, after)| (after - before).abs()).sum()
             } else {
                 0.0
             },
             welch: wanted.noise.then(|| Welch::new(rate_hz)),
+            scored: ranges.iter().map(Range::len).sum(),
+            ranges,
         })
     }
 
-    /// Ranges of samples in a transient, counted from the start of the trace, from [`SKIP_S`] on;
-    /// empty if the transient distance is not selected.
+    /// Ranges of scored samples in a transient; empty if the transient distance is not selected.
     #[must_use]
     pub fn transients(&self) -> &[Range<usize>] {
         &self.transients
@@ -81,7 +105,7 @@ impl<'a> Truth<'a> {
     /// Number of samples that are scored.
     #[must_use]
     pub fn scored(&self) -> usize {
-        self.omega.len() - self.skip
+        self.scored
     }
 
     /// Sum of the squared differences of neighbouring samples, (rad/s)^2.
@@ -91,50 +115,69 @@ impl<'a> Truth<'a> {
     }
 
     /// The errors of an estimate in the samples that are scored, rad/s.
-    pub(super) fn scored_errors(&self, estimate: &[f32]) -> impl Iterator<Item = f64> {
-        self.errors(&estimate[self.skip..])
+    pub(super) fn errors(&self, estimate: &[f32]) -> impl Iterator<Item = f64> {
+        self.ranges.iter().flat_map(|range| {
+            let scored = estimate[range.clone()].iter();
+            let pairs = scored.zip(&self.omega[range.clone()]);
+            pairs.map(|(&e, w)| f64::from(e) - w)
+        })
     }
 
-    /// Scores an estimate (rad/s) of this truth. All scores are `None` if the trace is not longer
-    /// than [`SKIP_S`].
+    /// Share of the scored samples that are within two of their standard deviations `deviation` (rad/s)
+    /// of this truth, 0 to 1; `None` if no sample is scored.
+    ///
+    /// # Panics
+    /// If `estimate`, `deviation` and the truth differ in length.
+    #[must_use]
+    pub fn within_2_sigma(&self, estimate: &[f32], deviation: &[f32]) -> Option<f64> {
+        let inside = |k: &usize| is_within_2_sigma(estimate[*k], deviation[*k], self.omega[*k]);
+        let samples = self.ranges.iter().cloned().flatten();
+        let inside = samples.filter(inside).count();
+        (self.scored > 0).then(|| inside as f64 / self.scored as f64)
+    }
+
+    /// Scores an estimate (rad/s) of this truth. All scores are `None` if no sample is scored.
     ///
     /// # Panics
     /// If the estimate and the truth differ in length.
     #[must_use]
     pub fn score(&self, estimate: &[f32]) -> Score {
         assert_eq!(estimate.len(), self.omega.len(), "one estimate per sample");
-        let scored = &estimate[self.skip..];
-        if scored.is_empty() {
+        if self.scored == 0 {
             return Score::default();
         }
-        let non_finite = scored.iter().filter(|e| !e.is_finite()).count();
+        let scored = self
+            .ranges
+            .iter()
+            .flat_map(|range| &estimate[range.clone()]);
+        let non_finite = scored.filter(|e| !e.is_finite()).count();
         if non_finite > 0 {
-            return self.not_finite(scored, non_finite);
+            return self.not_finite(estimate, non_finite);
         }
         let wanted = &self.wanted;
         let (rms, max) = if wanted.rms || wanted.max || wanted.force {
-            self.error_size(scored)
+            self.error_size(estimate)
         } else {
             (0.0, 0.0)
         };
         let (distance, outside) = if wanted.distance || wanted.outside {
-            self.distance(scored)
+            self.distance(estimate)
         } else {
             (0.0, 0.0)
         };
         Score {
             rms_rad_s: wanted.rms.then_some(rms),
             max_rad_s: wanted.max.then_some(max),
-            p99_rad_s: (wanted.p99).then(|| percentile(self.errors(scored), 0.99)),
+            p99_rad_s: (wanted.p99).then(|| percentile(self.errors(estimate), 0.99)),
             distance_rad_s: wanted.distance.then_some(distance),
-            distance_transient_rad_s: self.distance_in_transients(scored),
+            distance_transient_rad_s: self.distance_in_transients(estimate),
             outside: wanted.outside.then_some(outside),
             delay_ms: (wanted.delay)
-                .then(|| delay::samples(self.omega, estimate, self.skip))
+                .then(|| delay::samples(self.omega, estimate, skipped(self.rate_hz), &self.ranges))
                 .flatten()
                 .map(|samples| 1e3 * samples / self.rate_hz),
-            noise_rad_s: self.noise(scored),
-            chatter_rad_s: wanted.chatter.then(|| self.chatter(scored)),
+            noise_rad_s: self.noise(estimate),
+            chatter_rad_s: wanted.chatter.then(|| self.chatter(estimate)),
             force_mn: wanted
                 .force
                 .then_some(rms * self.interval.force_mn_per_rad_s),
@@ -142,13 +185,14 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// The scores of an estimate with `non_finite` samples that are NaN or infinite.
-    fn not_finite(&self, scored: &[f32], non_finite: usize) -> Score {
+    /// The scores of an estimate with `non_finite` scored samples that are NaN or infinite.
+    fn not_finite(&self, estimate: &[f32], non_finite: usize) -> Score {
         let wanted = &self.wanted;
         let worst = |wanted: bool| wanted.then_some(f64::INFINITY);
         let outside = || {
-            let outside = self.distances(0, scored).filter(|d| d.is_nan() || *d > 0.0);
-            outside.count() as f64 / scored.len() as f64
+            let distances = self.distances(estimate, &self.ranges);
+            let outside = distances.filter(|d| d.is_nan() || *d > 0.0);
+            outside.count() as f64 / self.scored as f64
         };
         Score {
             rms_rad_s: worst(wanted.rms),
@@ -163,68 +207,85 @@ impl<'a> Truth<'a> {
         }
     }
 
-    fn errors(&self, scored: &[f32]) -> impl Iterator<Item = f64> {
-        let truth = &self.omega[self.skip..];
-        scored.iter().zip(truth).map(|(&e, w)| f64::from(e) - w)
+    /// Distance of each estimate in `ranges` of scored samples from the haptic interval, rad/s; negative
+    /// inside it.
+    fn distances(&self, estimate: &[f32], ranges: &[Range<usize>]) -> impl Iterator<Item = f64> {
+        ranges.iter().flat_map(|range| {
+            let tolerance = &self.tolerance[range.start - self.skip..range.end - self.skip];
+            let pairs = estimate[range.clone()]
+                .iter()
+                .zip(&self.omega[range.clone()]);
+            pairs
+                .zip(tolerance)
+                .map(|((&e, w), tolerance)| (f64::from(e) - w).abs() - tolerance)
+        })
     }
 
-    /// Distance of each estimate from the haptic interval, rad/s; negative inside it. `first` is
-    /// the index of `estimates[0]` among the scored samples.
-    fn distances(&self, first: usize, estimates: &[f32]) -> impl Iterator<Item = f64> {
-        let truth = &self.omega[self.skip + first..];
-        let tolerance = &self.tolerance[first..];
-        estimates
-            .iter()
-            .zip(truth)
-            .zip(tolerance)
-            .map(|((&e, w), tolerance)| (f64::from(e) - w).abs() - tolerance)
-    }
-
-    fn error_size(&self, scored: &[f32]) -> (f64, f64) {
-        let (sum, max) = self.errors(scored).fold((0.0, 0.0_f64), |(sum, max), e| {
+    fn error_size(&self, estimate: &[f32]) -> (f64, f64) {
+        let (sum, max) = self.errors(estimate).fold((0.0, 0.0_f64), |(sum, max), e| {
             (sum + e * e, max.max(e.abs()))
         });
-        ((sum / scored.len() as f64).sqrt(), max)
+        ((sum / self.scored as f64).sqrt(), max)
     }
 
-    fn distance(&self, scored: &[f32]) -> (f64, f64) {
-        let (sum, outside) =
-            self.distances(0, scored)
-                .fold((0.0, 0.0), |(sum, outside), distance| {
-                    let is_outside = f64::from(u8::from(distance > 0.0));
-                    (sum + distance.max(0.0), outside + is_outside)
-                });
-        let n = scored.len() as f64;
+    fn distance(&self, estimate: &[f32]) -> (f64, f64) {
+        let distances = self.distances(estimate, &self.ranges);
+        let (sum, outside) = distances.fold((0.0, 0.0), |(sum, outside), distance| {
+            let is_outside = f64::from(u8::from(distance > 0.0));
+            (sum + distance.max(0.0), outside + is_outside)
+        });
+        let n = self.scored as f64;
         (sum / n, outside / n)
     }
 
-    fn distance_in_transients(&self, scored: &[f32]) -> Option<f64> {
-        let (mut sum, mut n) = (0.0, 0);
-        for range in &self.transients {
-            let first = range.start - self.skip;
-            let estimates = &scored[first..range.end - self.skip];
-            n += estimates.len();
-            sum += self
-                .distances(first, estimates)
-                .map(|distance| distance.max(0.0))
-                .sum::<f64>();
-        }
+    fn distance_in_transients(&self, estimate: &[f32]) -> Option<f64> {
+        let n: usize = self.transients.iter().map(Range::len).sum();
+        let distances = self.distances(estimate, &self.transients);
+        let sum: f64 = distances.map(|distance| distance.max(0.0)).sum();
         (n > 0).then(|| sum / n as f64)
     }
 
-    fn noise(&self, scored: &[f32]) -> Option<f64> {
-        let errors: Vec<f64> = self.welch.as_ref().map(|_| self.errors(scored).collect())?;
-        let density = self.welch.as_ref()?.density(&errors)?;
-        density.rms_within(TACTILE_BAND_HZ)
+    /// The spectrum needs all samples: an unknown error is 0, and the mean is that of the scored ones.
+    fn noise(&self, estimate: &[f32]) -> Option<f64> {
+        let welch = self.welch.as_ref()?;
+        let mut errors = vec![0.0; self.omega.len() - self.skip];
+        let samples = self.ranges.iter().cloned().flatten();
+        for (k, error) in samples.zip(self.errors(estimate)) {
+            errors[k - self.skip] = error;
+        }
+        let share = self.scored as f64 / errors.len() as f64;
+        let rms = welch.density(&errors)?.rms_within(TACTILE_BAND_HZ)?;
+        Some(rms / share.sqrt())
     }
 
-    fn chatter(&self, scored: &[f32]) -> f64 {
-        let variation: f64 = scored
-            .windows(2)
-            .map(|pair| (f64::from(pair[1]) - f64::from(pair[0])).abs())
+    fn chatter(&self, estimate: &[f32]) -> f64 {
+        let steps = neighbours(estimate, &self.ranges);
+        let variation: f64 = steps
+            .map(|(before, after)| (f64::from(after) - f64::from(before)).abs())
             .sum();
-        (variation - self.variation).max(0.0) / scored.len() as f64
+        (variation - self.variation).max(0.0) / self.scored as f64
     }
+}
+
+/// Neighbouring values of the same range.
+fn neighbours<T: Copy>(values: &[T], ranges: &[Range<usize>]) -> impl Iterator<Item = (T, T)> {
+    let pairs = ranges
+        .iter()
+        .flat_map(|range| values[range.clone()].windows(2));
+    pairs.map(|pair| (pair[0], pair[1]))
+}
+
+/// The samples that `some` and `others` have in common. Both are in order.
+fn common(some: &[Range<usize>], others: &[Range<usize>]) -> Vec<Range<usize>> {
+    let pairs = some.iter().flat_map(|a| others.iter().map(move |b| (a, b)));
+    let common = pairs.map(|(a, b)| a.start.max(b.start)..a.end.min(b.end));
+    common.filter(|range| !range.is_empty()).collect()
+}
+
+/// Whether a velocity is within two of its standard deviations of the true one.
+#[must_use]
+pub fn is_within_2_sigma(velocity: f32, deviation: f32, truth: f64) -> bool {
+    (f64::from(velocity) - truth).abs() <= 2.0 * f64::from(deviation)
 }
 
 #[cfg(test)]

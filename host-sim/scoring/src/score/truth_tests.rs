@@ -300,3 +300,50 @@ fn one_of_100_samples_exceeds_p99() {
         .collect();
     assert_eq!(score(&truth, &broken).p99_rad_s, Some(f64::INFINITY));
 }
+
+/// The estimate is far off where the truth is not known.
+#[test]
+fn samples_at_which_the_truth_is_not_known_are_in_no_score() {
+    let n = 6000;
+    let wave = |t: f64| 3.0 * (TAU * 1.3 * t).sin() + if t > 4.0 { 2.0 } else { 0.0 };
+    let noise = |t: f64| 0.5 * (TAU * 120.0 * t).sin();
+    let truth = signal(n, wave);
+    let good = estimate(n, |t| wave(t - 3e-3) + noise(t));
+    let unknown = |k: usize| (1200..1300).contains(&k) || (3990..4030).contains(&k) || k >= 5900;
+    let known: Vec<_> = (0..n).map(|k| !unknown(k)).collect();
+    let masked =
+        Truth::where_known(&truth, Some(&known), RATE_HZ, interval(), Wanted::ALL).unwrap();
+    assert_eq!(masked.scored(), n - 100 - 100 - 40 - 100);
+    let mut bad = good.clone();
+    (0..n).filter(|k| unknown(*k)).for_each(|k| bad[k] = 1e6);
+    let deviation = vec![0.3; n];
+    let within = |estimate: &[f32]| masked.within_2_sigma(estimate, &deviation);
+    assert_eq!(masked.score(&bad), masked.score(&good));
+    assert_eq!(within(&bad), within(&good));
+    bad[1250] = f32::NAN;
+    assert_eq!(masked.score(&bad).non_finite, 0);
+    // The scores of the whole trace but for the step, which is not known and has the transients.
+    let steady = truth.iter().zip(&known).map(|(w, known)| (w, *known));
+    let errors = steady.zip(&good).skip(100).filter(|((_, known), _)| *known);
+    let squares: Vec<_> = errors
+        .map(|((w, _), e)| (f64::from(*e) - w).powi(2))
+        .collect();
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    let found = masked.score(&good);
+    near(found.rms_rad_s, rms, 1e-9);
+    near(found.noise_rad_s, 0.5 / SQRT_2, 0.01);
+    near(found.delay_ms, 3.0, 0.02);
+    assert_eq!(found.distance_transient_rad_s, None);
+    assert_eq!(
+        Truth::where_known(
+            &truth,
+            Some(&vec![false; n]),
+            RATE_HZ,
+            interval(),
+            Wanted::ALL
+        )
+        .unwrap()
+        .score(&good),
+        Score::default()
+    );
+}

@@ -1,6 +1,6 @@
 //! Size of each cause over a run.
 
-use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
+use scoring::score::{TACTILE_BAND_HZ, skipped};
 use scoring::spectrum::{Density, Welch};
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ pub struct Part {
     pub tactile_share: Option<f64>,
 }
 
-/// The parasitic force of a run after the first [`SKIP_S`] seconds, by cause.
+/// The parasitic force of a run after the first [`SKIP_S`](scoring::score::SKIP_S) seconds, by cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribution {
     /// RMS of the parasitic force, mN.
@@ -40,7 +40,7 @@ impl Attribution {
     #[must_use]
     pub fn of(terms_mn: &[Vec<f64>; CAUSES], rate_hz: f64) -> Option<Self> {
         let ticks = terms_mn[0].len();
-        let skip = ((SKIP_S * rate_hz).round() as usize).min(ticks);
+        let skip = skipped(rate_hz).min(ticks);
         let terms = terms_mn.each_ref().map(|term| &term[skip..]);
         let mut total = vec![0.0; ticks - skip];
         for term in terms {
