@@ -184,14 +184,14 @@ const FORMATTED: usize = 1 << 11;
 /// Names of the columns of a reference.
 pub const REFERENCE_COLUMNS: [&str; 2] = ["reference_rad_s", "reference_sd_rad_s"];
 
-/// Writes rows of `t`, one velocity per estimator, and the columns `reference`, rad/s, as CSV.
+/// Writes rows of `t`, the `columns` of the estimators, and those of the `reference`, rad/s, as CSV.
 ///
 /// # Errors
 /// The errors of `out`.
 pub fn csv(
     out: &mut dyn Write,
     t: &[f64],
-    velocities: &[&[f32]],
+    columns: &[&[f32]],
     reference: &[&[f64]],
 ) -> io::Result<()> {
     let chunks = t.par_chunks(FORMATTED).enumerate();
@@ -200,8 +200,8 @@ pub fn csv(
             let mut text = Vec::new();
             for (k, t) in t.iter().enumerate() {
                 write!(text, "{t}")?;
-                for velocity in velocities {
-                    write!(text, ",{}", velocity[chunk * FORMATTED + k])?;
+                for column in columns {
+                    write!(text, ",{}", column[chunk * FORMATTED + k])?;
                 }
                 for value in reference {
                     write!(text, ",{:.6}", value[chunk * FORMATTED + k])?;

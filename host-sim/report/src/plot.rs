@@ -3,12 +3,16 @@
 use super::canvas::{Anchor, Canvas, LABEL};
 use super::curve;
 use super::palette::{BAND, BAND_EDGE, GRID, INK, MUTED};
-use super::style::Style;
+use super::style::{Dash, Style, length};
 use super::text::number;
 use plotters::style::RGBColor;
 
 /// Smallest length of an axis, of its largest value: a thousand roundings of its ticks are shorter.
 const RESOLVED: f64 = 1e-12;
+
+/// Length of the longest curve with dashes, px. A longer one fills its frame: no dash is seen, and each is an
+/// element of the image.
+const LONGEST_DASHED: f64 = 20_000.0;
 
 /// Most further ticks that are tried for an axis that would have fewer than two.
 const FURTHER: usize = 20;
@@ -230,8 +234,11 @@ impl Plot {
         let columns = (self.right - self.left) as usize;
         let places = points.map(|point| self.at(point));
         let places = curve::reduce(places, [self.left, self.right], columns);
-        for piece in curve::clip(&places, [self.top, self.bottom]) {
-            canvas.line(&piece, style, width)?;
+        let pieces = curve::clip(&places, [self.top, self.bottom]);
+        let long = pieces.iter().map(|piece| length(piece)).sum::<f64>() > LONGEST_DASHED;
+        let dash = if long { Dash::Solid } else { style.dash };
+        for piece in pieces {
+            canvas.line(&piece, Style { dash, ..style }, width)?;
         }
         Ok(())
     }
@@ -270,7 +277,9 @@ impl Plot {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::figure;
     use super::*;
+    use maud::Render as _;
 
     #[test]
     fn ticks_are_round_and_inside_the_axis() {
@@ -320,6 +329,31 @@ mod tests {
         }
         // Three seconds of a clock from 1970 keep their ends.
         assert_eq!(Axis::linear([1.7e9, 1.7e9 + 3.0]).high, 1.7e9 + 3.0);
+    }
+
+    #[test]
+    fn curve_that_fills_its_frame_has_no_dashes() {
+        let lines = |swings: usize| {
+            let plot = Plot {
+                left: 0.0,
+                top: 0.0,
+                right: 400.0,
+                bottom: 100.0,
+                x: Axis::linear([0.0, swings as f64]),
+                y: Axis::linear([0.0, 1.0]),
+            };
+            let style = Style {
+                dash: Dash::Dashed,
+                ..INK.into()
+            };
+            let points = (0..=swings).map(|k| (k as f64, (k % 2) as f64));
+            let svg = figure(100.0, "t", |canvas| plot.curve(canvas, points, style, 1.0));
+            let svg = svg.unwrap().render().into_string();
+            svg.matches("<polyline").count()
+        };
+        // Each swing has 100 px and more: 10 px for a dash and a gap.
+        assert!((1000..2000).contains(&lines(150)), "{}", lines(150));
+        assert_eq!(lines(200), 1);
     }
 
     #[test]

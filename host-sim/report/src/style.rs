@@ -82,6 +82,14 @@ impl Strokes for Dash {
     }
 }
 
+/// Length of a polyline.
+pub(super) fn length(points: &[(f64, f64)]) -> f64 {
+    let steps = points.windows(2);
+    steps
+        .map(|p| (p[1].0 - p[0].0).hypot(p[1].1 - p[0].1))
+        .sum()
+}
+
 impl Style {
     /// The background of a swatch in HTML.
     pub(super) fn css(self) -> String {
@@ -106,14 +114,8 @@ impl Style {
 mod tests {
     use super::*;
 
-    fn length(pieces: &[Vec<(f64, f64)>]) -> f64 {
-        let of = |piece: &Vec<(f64, f64)>| -> f64 {
-            let steps = piece.windows(2);
-            steps
-                .map(|p| (p[1].0 - p[0].0).hypot(p[1].1 - p[0].1))
-                .sum()
-        };
-        pieces.iter().map(of).sum()
+    fn drawn(pieces: &[Vec<(f64, f64)>]) -> f64 {
+        pieces.iter().map(|piece| length(piece)).sum()
     }
 
     #[test]
@@ -122,10 +124,10 @@ mod tests {
         assert_eq!(Dash::Solid.pieces(&corner), [corner.to_vec()]);
         // 100 px are ten times 7 drawn and 3 left out.
         let dashed = Dash::Dashed.pieces(&corner);
-        assert!((length(&dashed) - 70.0).abs() < 1e-9, "{dashed:?}");
+        assert!((drawn(&dashed) - 70.0).abs() < 1e-9, "{dashed:?}");
         // 16 px are 9 + 2 drawn; 96 px six times that, and 4 px more of the first.
         let both = Dash::Mixed.pieces(&corner);
-        assert!((length(&both) - (6.0 * 11.0 + 4.0)).abs() < 1e-9);
+        assert!((drawn(&both) - (6.0 * 11.0 + 4.0)).abs() < 1e-9);
         assert_eq!(Dash::Dashed.spans(0.0, 12.0), [[0.0, 7.0], [10.0, 12.0]]);
         assert_eq!(Dash::Dashed.spans(3.0, 3.0), [[3.0, 3.0]]);
     }

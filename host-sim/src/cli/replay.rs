@@ -46,6 +46,10 @@ pub(super) struct Replay {
     /// nothing with --json -]
     #[arg(long, value_name = "FILE.csv")]
     pub(super) out: Option<PathBuf>,
+    /// Write beside each velocity of --out its standard deviation as column NAME_sd (rad/s), if the
+    /// estimator reports one
+    #[arg(long)]
+    pub(super) deviations: bool,
     /// Write the scores as JSON to FILE; - is standard output, which then has nothing else. They are
     /// against true_omega, or against the reference
     #[arg(long, value_name = "FILE")]
@@ -73,6 +77,11 @@ pub(super) enum ReferenceUse {
 
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
+    let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
+    if options.deviations && json_to_stdout && options.out.is_none() {
+        let why = "--deviations: --json - writes no velocities; give --out FILE.csv";
+        return Err(Failure::Input(why.to_owned()));
+    }
     let kinds = kinds(&options.estimators)?;
     let loaded = options.device.loaded()?;
     let parameters = options.parameters.load()?;
@@ -117,9 +126,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         reference: reference.as_ref(),
         scores: matches!(against, Against::Reference(_)),
         columns: options.reference == Some(ReferenceUse::Columns),
+        deviations: options.deviations,
         passed: 0..0,
     };
-    let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
     let out = match &options.out {
         None if json_to_stdout => None,
         out => Some(out.as_deref().unwrap_or(Path::new("-"))),
@@ -162,6 +171,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let device_name = format!("{counts_of}{device_name}");
     if let Some(line) = interruptions {
         note(wrapped(&format!("{name}: {line}"), 2));
+    }
+    if options.deviations && run.estimates.iter().all(|e| e.deviation.is_none()) {
+        note("--deviations: none of these estimators reports a standard deviation");
     }
     let without = without.or_else(|| unscored(&survey).filter(|_| !rows.is_empty()));
     if let Some(why) = &without {
@@ -293,6 +305,8 @@ struct Passes<'a> {
     scores: bool,
     /// Whether the reference is written.
     columns: bool,
+    /// Whether standard deviations are written.
+    deviations: bool,
     /// The latest rows.
     passed: std::ops::Range<usize>,
 }
@@ -331,17 +345,22 @@ impl Passes<'_> {
 fn write_rows(out: &Path, passes: &mut Passes, run: &mut Run) -> Result<(), Failure> {
     let mut refused = None;
     let written = write_with(out, |to| {
-        let reference: &[&str] = match passes.reference_columns().is_empty() {
-            true => &[],
-            false => &replay::REFERENCE_COLUMNS,
-        };
-        let names = run.estimates.iter().map(|e| e.estimator);
-        replay::csv_header(to, names.chain(reference.iter().copied()))?;
+        let mut is_first = true;
         loop {
             match passes.step(run) {
                 Ok(true) => {
+                    let (names, columns): (Vec<_>, Vec<_>) =
+                        run.columns(passes.deviations).into_iter().unzip();
                     let reference = passes.reference_columns();
-                    replay::csv(to, run.t(), &run.velocities(), &reference)?;
+                    if std::mem::take(&mut is_first) {
+                        let of_reference = match reference.is_empty() {
+                            true => &[][..],
+                            false => &replay::REFERENCE_COLUMNS,
+                        };
+                        let names = names.iter().map(String::as_str);
+                        replay::csv_header(to, names.chain(of_reference.iter().copied()))?;
+                    }
+                    replay::csv(to, run.t(), &columns, &reference)?;
                 }
                 Ok(false) => return Ok(()),
                 Err(failure) => {

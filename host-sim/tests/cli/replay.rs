@@ -343,3 +343,40 @@ fn named_estimator_without_its_column_is_refused() {
         assert!(!folder.path().join(out).exists());
     }
 }
+
+#[test]
+fn standard_deviations_are_columns_beside_the_velocities() {
+    let folder = Folder::new(HOST_SIM);
+    let log = format!("{DATA}/back-and-forth.csv");
+    let replay = format!("replay {log} --counts-per-rev 90 --estimator pll --estimator imm");
+    let csv = folder.good(&format!("{replay} --deviations"));
+    let without = folder.good(&replay);
+    assert_eq!(csv.lines().next(), Some("t,pll,imm,imm_sd"));
+    assert_eq!(csv.lines().count(), without.lines().count());
+    let mut shares = [0, 0];
+    let truth = folder.text(&log);
+    for ((line, plain), truth) in csv
+        .lines()
+        .zip(without.lines())
+        .zip(truth.lines())
+        .skip(200)
+    {
+        let (rest, sd) = line.rsplit_once(',').unwrap();
+        assert_eq!(rest, plain);
+        let velocity: f64 = rest.rsplit_once(',').unwrap().1.parse().unwrap();
+        let truth: f64 = truth.split(',').nth(4).unwrap().parse().unwrap();
+        let sd: f64 = sd.parse().unwrap();
+        assert!(sd > 0.0, "{line}");
+        shares[usize::from((velocity - truth).abs() < 2.0 * sd)] += 1;
+    }
+    assert!(shares[1] > 4 * shares[0], "{shares:?}");
+    let none = format!("replay {log} --estimator pll --deviations");
+    let (_, notes) = folder.ends(0, &none);
+    let said = "--deviations: none of these estimators reports a standard deviation";
+    assert!(notes.contains(said), "{notes}");
+    let line = folder.refused(&format!("{none} --json -"));
+    assert!(
+        line.contains("--json - writes no velocities; give --out FILE.csv"),
+        "{line}"
+    );
+}

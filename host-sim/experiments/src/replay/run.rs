@@ -154,13 +154,19 @@ impl Run {
         &self.section.t[self.before..]
     }
 
-    /// Velocities of each estimator at the latest rows, rad/s.
+    /// Names and values of columns at the latest rows: the velocity of each estimator, rad/s, followed with
+    /// `deviations` by its standard deviation, rad/s, as `NAME_sd` if the estimator reports one.
     #[must_use]
-    pub fn velocities(&self) -> Vec<&[f32]> {
-        let estimates = self.estimates.iter();
-        estimates
-            .map(|estimate| &estimate.velocity[self.before..])
-            .collect()
+    pub fn columns(&self, deviations: bool) -> Vec<(String, &[f32])> {
+        let mut columns = Vec::new();
+        for estimate in &self.estimates {
+            let name = estimate.estimator;
+            columns.push((name.to_owned(), &estimate.velocity[self.before..]));
+            if let Some(deviation) = estimate.deviation.as_ref().filter(|_| deviations) {
+                columns.push((format!("{name}_sd"), &deviation[self.before..]));
+            }
+        }
+        columns
     }
 
     /// The scores of the rows so far, empty without column `true_omega`.
@@ -215,20 +221,27 @@ mod tests {
         let run = || Run::new(&columns, rows, "r", &kinds, &device, &parameters).unwrap();
         let mut whole = run();
         whole.add(recording.clone(), &|| ()).unwrap();
-        assert_eq!(whole.velocities().len(), kinds.len());
+        let names = |run: &Run, deviations| -> Vec<_> {
+            let columns = run.columns(deviations).into_iter();
+            columns.map(|(name, _)| name).collect()
+        };
+        let all = names(&whole, true);
+        assert!(all.contains(&"imm_sd".to_owned()) && !all.contains(&"pll_sd".to_owned()));
+        let estimators: Vec<_> = kinds.iter().map(|kind| kind.name.to_owned()).collect();
+        assert_eq!(names(&whole, false), estimators);
         let mut sections = run();
-        let mut joined = vec![Vec::new(); kinds.len()];
+        let mut joined = vec![Vec::new(); all.len()];
         let mut t = Vec::new();
         for number in [700, 130, 1000, rows] {
             sections.add(recording.split_front(number), &|| ()).unwrap();
             t.extend_from_slice(sections.t());
-            for (all, part) in joined.iter_mut().zip(sections.velocities()) {
+            for (all, (_, part)) in joined.iter_mut().zip(sections.columns(true)) {
                 all.extend_from_slice(part);
             }
         }
         assert_eq!(t, whole.t());
-        for (kind, (joined, whole)) in kinds.iter().zip(joined.iter().zip(whole.velocities())) {
-            assert_eq!(joined, whole, "{}", kind.name);
+        for (joined, (name, whole)) in joined.iter().zip(whole.columns(true)) {
+            assert_eq!(joined, whole, "{name}");
         }
         let damping = |run: &Run| -> Vec<_> {
             let rows = run.rows().into_iter();

@@ -7,6 +7,7 @@ use super::super::palette::{INK, Palette, TRUTH};
 use super::super::plot::{Axis, Plot};
 use experiments::real::run::Outcome;
 use scoring::evaluation::Estimate;
+use scoring::percentile;
 
 /// Length of the part that is drawn, s.
 const SHOWN_S: f64 = 1.0;
@@ -17,6 +18,19 @@ const STEP_S: f64 = 0.1;
 const LEFT: f64 = 62.0;
 const TOP: f64 = 34.0;
 const PANEL: f64 = 220.0;
+
+/// Share of the samples whose error is in the frame, if it is not too large.
+const SHOWN: f64 = 0.95;
+
+/// Largest room above and below the motion, of the size of the motion: a larger noise leaves the frame.
+const ROOM: f64 = 3.0;
+
+/// Room above and below a motion from `low` to `high` for errors of size `error`, rad/s.
+fn margin([low, high]: [f64; 2], error: f64) -> f64 {
+    let size = (high - low).max(low.abs()).max(high.abs());
+    let least = (0.3 * (high - low)).max(0.4 * low.abs().max(high.abs()));
+    error.min(ROOM * size).max(least).max(0.05)
+}
 
 /// First tick of the part of [`SHOWN_S`] in which the estimates have the largest errors, each relative
 /// to its own error over the recording.
@@ -95,7 +109,7 @@ pub(in super::super) fn velocity(
         estimates,
         rate_hz,
     } = *signals;
-    let drawn: Vec<&Estimate> = estimates
+    let mut drawn: Vec<&Estimate> = estimates
         .iter()
         .filter(|estimate| drawn.contains(&estimate.estimator))
         .collect();
@@ -104,10 +118,11 @@ pub(in super::super) fn velocity(
     let part = &truth[ticks.clone()];
     let low = part.iter().copied().fold(f64::INFINITY, f64::min);
     let high = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Noise that is larger than the motion leaves the frame.
-    let margin = (0.3 * (high - low))
-        .max(0.4 * low.abs().max(high.abs()))
-        .max(0.05);
+    let error = |estimate: &Estimate, k: usize| f64::from(estimate.velocity[k]) - truth[k];
+    let size = |estimate: &&Estimate| percentile(ticks.clone().map(|k| error(estimate, k)), SHOWN);
+    // The line with the smallest error is on top.
+    drawn.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let margin = margin([low, high], drawn.first().map_or(0.0, size));
     let seconds = |tick: usize| tick as f64 / rate_hz;
     let mut keys = vec![Key::Line(TRUTH.into(), called)];
     keys.extend((drawn.iter()).map(|e| Key::Line(palette.style(e.estimator), e.estimator)));
@@ -141,4 +156,27 @@ pub(in super::super) fn velocity(
         plot.edges(canvas)?;
         canvas.legend(&keys, (LEFT, bottom))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::margin;
+
+    #[test]
+    fn room_around_a_motion_is_that_of_the_errors_within_bounds() {
+        for (range, error, room) in [
+            ([-2.0, 2.0], 3.0, 3.0),
+            // At least 0.3 of the motion, 0.4 of its speed and 0.05 rad/s.
+            ([-2.0, 2.0], 0.1, 1.2),
+            ([10.0, 11.0], 0.1, 4.4),
+            ([0.0, 0.0], 0.0, 0.05),
+            // At most three times the motion, or its speed.
+            ([-2.0, 2.0], 50.0, 12.0),
+            ([10.0, 10.5], 50.0, 31.5),
+            ([-2.0, 2.0], f64::INFINITY, 12.0),
+        ] {
+            let found = margin(range, error);
+            assert!((found - room).abs() < 1e-12, "{range:?} {error}: {found}");
+        }
+    }
 }
