@@ -372,4 +372,4 @@ impl Drop for Board {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

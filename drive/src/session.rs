@@ -145,18 +145,23 @@ fn arm(board: &mut Board, answer: &Answer, scene: Option<SceneKind>) -> Result<(
 pub(crate) fn kept_alive(board: &mut Board, answer: &Answer, plan: Plan) -> Result<(), Failure> {
     plan.check()?;
     interrupt::take();
+    enabled(board, answer)?;
+    board.disarm_at_the_end();
+    ended(board, answer, plan)
+}
+
+/// Checks that the amplifiers of a board are enabled. A board that settles is armed by itself.
+fn enabled(board: &mut Board, answer: &Answer) -> Result<(), Failure> {
     let refusal = |frame: &Frame| {
         let state = state(frame);
         format!("nothing to keep alive: {state}; cargo drive arm arms the board")
     };
-    // A board that settles is armed by itself.
     let is_settled = |frame: &Frame| Mode::from_code(frame.state) != Some(Mode::Settling);
     let frame = board.wait(answer.hello.rate, is_settled, refusal)?;
-    if !is_ready(Mode::from_code(frame.state)) {
-        return Err(Failure::Check(refusal(&frame)));
+    match is_ready(Mode::from_code(frame.state)) {
+        true => Ok(()),
+        false => Err(Failure::Check(refusal(&frame))),
     }
-    board.disarm_at_the_end();
-    ended(board, answer, plan)
 }
 
 /// Follows the plan, disarms the board and writes the recording.
@@ -201,4 +206,63 @@ fn written(followed: Result<(), Failure>, recorder: Option<Recorder>) -> Result<
 /// Whether a scene can be selected or runs.
 pub(crate) fn is_ready(mode: Option<Mode>) -> bool {
     matches!(mode, Some(Mode::Armed | Mode::Running))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use crate::board::tests::{answer, sent};
+    use crate::strokes::plan;
+    use crate::watch::tests::FRAME;
+
+    fn recorder(out: PathBuf) -> Option<Recorder> {
+        Some(Recorder::new(&answer().hello, out))
+    }
+
+    /// What comes is lost otherwise.
+    #[test]
+    fn recording_without_a_place_is_refused_before_its_session_begins() {
+        for session in [armed, kept_alive, unarmed] {
+            let (mut board, end) = sent(&[]);
+            drop(end);
+            let plan = Plan {
+                recorder: recorder(env!("CARGO_MANIFEST_DIR").into()),
+                ..plan(None, true, 1.0)
+            };
+            let error = session(&mut board, &answer(), plan).unwrap_err();
+            assert!(error.to_string().contains("is a folder"), "{error}");
+        }
+    }
+
+    #[test]
+    fn error_of_the_session_comes_before_that_of_its_file() {
+        let stopped = Err(Failure::Check("stopped".to_owned()));
+        let folder = tempfile::tempdir().unwrap();
+        // No frame came, which is an error of the file.
+        let recorder = || recorder(folder.path().join("run.csv"));
+        assert_eq!(written(stopped.clone(), recorder()), stopped);
+        assert!(written(Ok(()), recorder()).is_err());
+    }
+
+    #[test]
+    fn board_that_settles_is_not_refused() {
+        let enabled_after = |states: &[Mode]| {
+            let frames = states.iter().map(|state| {
+                let state = *state as u8;
+                Frame { state, ..FRAME }.into()
+            });
+            let (mut board, _end) = sent(&frames.collect::<Vec<_>>());
+            enabled(&mut board, &answer())
+        };
+        for last in [Mode::Armed, Mode::Running] {
+            assert_eq!(enabled_after(&[Mode::Settling, last]), Ok(()));
+        }
+        for last in [Mode::Boot, Mode::Safe] {
+            let error = enabled_after(&[Mode::Settling, last]).unwrap_err();
+            let said = error.to_string();
+            assert!(said.starts_with("nothing to keep alive: "), "{said}");
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! Tests of waits.
+//! Tests of waits and sessions.
 
 use std::thread::sleep;
 
@@ -7,11 +7,12 @@ use drivers::link::LONGEST;
 use super::*;
 use crate::follow::follow;
 use crate::port::PipeEnd;
-use crate::session::Plan;
+use crate::refusal::UNVERIFIED;
+use crate::strokes::plan;
 use crate::watch::tests::FRAME;
 
 /// A board of little patience, and its end of the line, which has sent these messages, each for itself.
-fn sent(messages: &[Message]) -> (Board, PipeEnd) {
+pub(crate) fn sent(messages: &[Message]) -> (Board, PipeEnd) {
     let (port, end) = Port::pipe("board");
     for message in messages {
         let mut buffer = [0; LONGEST];
@@ -19,6 +20,20 @@ fn sent(messages: &[Message]) -> (Board, PipeEnd) {
         end.to.send(bytes).unwrap();
     }
     (Board::new(port, Duration::from_millis(50)), end)
+}
+
+/// A session ends before by what a test does.
+const LONG: f64 = 3600.0;
+
+/// No command has been rejected before the session.
+pub(crate) fn answer() -> Answer {
+    Answer {
+        hello: Hello {
+            rate: 10_000,
+            ..Hello::default()
+        },
+        rejected: Some(Rejected::default()),
+    }
 }
 
 #[test]
@@ -53,21 +68,10 @@ fn frame_that_comes_behind_other_bytes_while_the_process_stands_still_ends_no_se
     end.to.send(vec![0; READ]).unwrap();
     end.to.send(frame).unwrap();
     drop(end);
-    let answer = Answer {
-        hello: Hello::default(),
-        rejected: None,
-    };
-    let plan = Plan {
-        scene: None,
-        changes: Vec::new(),
-        seconds: None,
-        every: None,
-        recorder: None,
-        has_stdout: false,
-        keeps_alive: false,
-    };
     let mut came = Vec::new();
-    let ended = follow(&mut board, &answer, plan, &mut |message| came.push(message));
+    let plan = plan(None, false, LONG);
+    let mut sink = |message| came.push(message);
+    let ended = follow(&mut board, &answer(), plan, &mut sink);
     assert_eq!(came, [FRAME.into()]);
     let lost = ended.unwrap_err().to_string();
     assert!(lost.contains("connection lost"), "{lost}");
@@ -83,5 +87,36 @@ fn wait_ends_where_nothing_comes_or_no_end() {
     for (behind, ends) in [(0, true), (READ, false), (MOST_BEHIND + READ, true)] {
         board.behind = behind;
         assert_eq!(board.is_over(now), ends);
+    }
+}
+
+/// The frames tell whether it was selected. A scene that is selected twice begins twice.
+#[test]
+fn scene_is_selected_once_though_bytes_that_are_no_command_come() {
+    let noise = Rejected {
+        garbage: 1,
+        ..Rejected::default()
+    };
+    let (mut board, PipeEnd { to, from }) = sent(&[Hello::default().into(), noise.into()]);
+    drop(to);
+    let plan = plan(Some(SceneKind::Wall), true, LONG);
+    assert!(follow(&mut board, &answer(), plan, &mut |_| ()).is_err());
+    let select = encode(Command::Request(Request::Select(SceneKind::Wall.number())));
+    assert_eq!(from.try_iter().filter(|it| *it == select).count(), 1);
+}
+
+#[test]
+fn refusal_without_a_question_ends_a_session_that_sends_commands_alone() {
+    for (keeps_alive, said) in [(true, UNVERIFIED), (false, "connection lost")] {
+        let now = Rejected {
+            unverified: 1,
+            ..Rejected::default()
+        };
+        let (mut board, PipeEnd { to, .. }) = sent(&[now.into()]);
+        drop(to);
+        let plan = plan(None, keeps_alive, LONG);
+        let ended = follow(&mut board, &answer(), plan, &mut |_| ());
+        let error = ended.unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
     }
 }

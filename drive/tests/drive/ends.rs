@@ -158,6 +158,8 @@ fn connection_that_closes_gets_a_disarm() {
         let said = error(&output);
         assert!(said.contains("connection lost"), "{said}");
         assert!(said.contains("run the command again"), "{said}");
+        let end = "; the board ends the scene by itself when no command comes";
+        assert_eq!(said.ends_with(end), !expected.is_empty(), "{said}");
         assert_eq!(deduplicated(sorted(&commands).0), expected);
     }
 }
@@ -166,15 +168,20 @@ fn connection_that_closes_gets_a_disarm() {
 #[cfg(target_os = "linux")]
 #[test]
 fn error_of_the_tool_itself_disarms() {
-    let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let board = Board::new(Script::default());
-    let output = board.tool(&SELECT).stdout(full).output().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(error(&output).contains("standard output"));
-    assert_eq!(
-        deduplicated(sorted(&board.commands()).0),
-        [ARM, WALL, DISARM]
-    );
+    for (begin, arguments, expected) in [
+        (Mode::Boot, &SELECT[..], &[ARM, WALL, DISARM][..]),
+        (Mode::Running, &["keep-alive", "--seconds", "10"], &[DISARM]),
+    ] {
+        let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let board = Board::new(Script {
+            begin,
+            ..Script::default()
+        });
+        let output = board.tool(arguments).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(error(&output).contains("standard output"));
+        assert_eq!(deduplicated(sorted(&board.commands()).0), expected);
+    }
 }
 
 #[test]
@@ -223,13 +230,13 @@ fn scene_of_another_program_ends_before_the_next_one_begins() {
     let select = ["select", "wall", "--seconds", "0.2"];
     let (output, commands) = board(Some(0)).run(&select);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let (mut others, _) = sorted(&commands);
-    others.dedup();
-    assert_eq!(others, [DISARM, ARM, WALL, DISARM]);
+    let expected = [DISARM, ARM, WALL, DISARM];
+    assert_eq!(deduplicated(sorted(&commands).0), expected);
     // The command is lost.
-    let (output, _) = board(None).run(&[&select[..], &BRIEFLY].concat());
+    let (output, commands) = board(None).run(&[&select[..], &BRIEFLY].concat());
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(error(&output).contains("the scene does not start: state armed, cause none"));
+    assert_eq!(deduplicated(sorted(&commands).0), expected);
 }
 
 #[test]
