@@ -185,7 +185,69 @@ pub const fn outcome_words(saved: Saved) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use drivers::link;
+
     use super::*;
+    use crate::board::tests::sent;
+
+    /// How the command `store` ends with these outcomes from the board.
+    fn stored(outcomes: &[u8]) -> Result<(), Failure> {
+        let messages = outcomes.iter().map(|outcome| {
+            let outcome = *outcome;
+            link::Stored { outcome }.into()
+        });
+        let (mut board, _end) = sent(&messages.collect::<Vec<_>>());
+        board.speak_to(Box::new(drop));
+        store(&mut board)
+    }
+
+    #[test]
+    fn settings_are_stored_once_the_board_says_so() {
+        let [done, enabled] = [Saved::Stored, Saved::Enabled].map(|saved| saved as u8);
+        assert_eq!(stored(&[done]), Ok(()));
+        // It is not certain yet that the amplifiers are disabled.
+        assert_eq!(stored(&[enabled, enabled, done]), Ok(()));
+        for (outcome, reason) in [
+            (enabled, "the amplifiers are enabled; disarm first"),
+            (
+                Saved::Full as u8,
+                "the flash is full; reset the board and store again",
+            ),
+            (Saved::Refused as u8, "the flash refuses the access"),
+            (
+                Saved::Mismatch as u8,
+                "the flash does not hold what was written",
+            ),
+            (99, "outcome 99"),
+        ] {
+            let failed = Failure::Check(format!("not stored: {reason}"));
+            assert_eq!(stored(&[outcome]), Err(failed));
+        }
+        assert_eq!(stored(&[]).unwrap_err().status(), 2);
+    }
+
+    /// The value of each setting is its number, and a hundred more in an older answer.
+    #[test]
+    fn values_keep_their_numbers_if_messages_are_lost() {
+        const COUNT: u8 = Setting::ALL.len() as u8;
+        let message = |number: u8, older: f32| {
+            let value = f32::from(number) + older;
+            Message::Setting(link::Setting {
+                number,
+                value,
+                count: COUNT,
+            })
+        };
+        let expected: Vec<_> = (0..COUNT).map(f32::from).collect();
+        let shown = |messages: &[Message]| values(&mut sent(messages).0).unwrap();
+        // One answer lacks the second setting, the next one the first.
+        let lacking = (0..COUNT - 1).filter(|number| *number != 1);
+        let both = lacking.chain(1..COUNT).map(|number| message(number, 0.0));
+        assert_eq!(shown(&both.collect::<Vec<_>>()), expected);
+        let older = (0..2).map(|number| message(number, 100.0));
+        let whole = (0..COUNT).map(|number| message(number, 0.0));
+        assert_eq!(shown(&older.chain(whole).collect::<Vec<_>>()), expected);
+    }
 
     #[test]
     fn assignments_are_checked_before_anything_is_sent() {
