@@ -255,13 +255,23 @@ mod tests {
                 "{said}"
             );
         }
-        for slope in [0.0, 0.4, -0.4] {
+        for slope in [0.0, 0.49, -0.49] {
             for said in refused(|_, command| 0.001 + slope * command) {
                 assert!(said.contains("check the motor's leads"), "{said}");
             }
         }
         for said in refused(|_, _| f32::NAN) {
             assert!(said.contains("check the motor's leads"), "{said}");
+        }
+    }
+
+    #[test]
+    fn half_of_the_current_is_measured_at_least() {
+        for fit in fits(&seen(|_, command| 0.51 * command)) {
+            assert!(fit.is_ok(), "{fit:?}");
+        }
+        for said in refused(|_, command| -0.51 * command) {
+            assert!(said.contains("exchange"), "{said}");
         }
     }
 
@@ -311,6 +321,53 @@ mod tests {
             "{error}"
         );
         assert!(Fit::of(&weak, &CHANNELS[1]).is_ok());
+    }
+
+    #[test]
+    fn commands_reach_nine_tenths_of_the_strokes() {
+        for (part, is_enough) in [(0.91, true), (0.89, false)] {
+            let mut part_of = seen(|_, command| command);
+            for frame in &mut part_of.frames {
+                frame.current *= part;
+                frame.current_small *= part;
+            }
+            for fit in fits(&part_of) {
+                assert_eq!(fit.is_ok(), is_enough, "{part}: {fit:?}");
+            }
+        }
+    }
+
+    /// Commands in one direction alone do not tell an offset from a slope.
+    #[test]
+    fn each_direction_has_fifty_pairs() {
+        for (number, is_enough) in [(50, true), (49, false)] {
+            let mut lacking = seen(|_, command| command);
+            let mut left = number;
+            lacking.measured.retain(|it| {
+                let frame = &lacking.frames[it.seq as usize];
+                // The first four frames of each block end no pair.
+                let is_pair = frame.current < 0.0 && it.seq % 12 >= 4;
+                let stays = !is_pair || left > 0;
+                left -= usize::from(is_pair && stays);
+                stays
+            });
+            // The command of the small motor has the other sign.
+            for channel in &CHANNELS {
+                let fit = Fit::of(&lacking, channel);
+                assert_eq!(fit.is_ok(), is_enough, "{fit:?}");
+                assert_eq!(are_strokes_short(&lacking, channel), !is_enough);
+            }
+        }
+    }
+
+    #[test]
+    fn offset_at_rest_is_the_mean_of_fifty_pairs_at_least() {
+        let mut seen = seen(|_, command| 0.02 + 0.9 * command);
+        let offset = offset_at_rest(&seen, &CHANNELS[0]).expect("an offset");
+        assert!((offset - 0.02).abs() < 1e-6);
+        // Four blocks at rest have 32 pairs.
+        seen.frames.truncate(300);
+        assert_eq!(offset_at_rest(&seen, &CHANNELS[0]), None);
     }
 
     #[test]
