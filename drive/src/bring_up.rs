@@ -193,8 +193,32 @@ fn at_rest(name: &'static str, Seen { frames, .. }: &Seen) -> Vec<Line> {
 
 #[cfg(test)]
 mod tests {
+    use drivers::link::Hello;
+
     use super::*;
     use crate::watch::tests::FRAME;
+
+    #[test]
+    fn image_for_other_files_than_those_of_the_tool_fails() {
+        let result = |device, presets| {
+            let hello = Hello {
+                device,
+                presets,
+                ..Hello::default()
+            };
+            let rejected = None;
+            identity(&Answer { hello, rejected }).1
+        };
+        let [device, presets] = [DEVICE_FINGERPRINT.0, PRESETS_FINGERPRINT.0];
+        assert!(result(device, presets).is_ok());
+        for (other, what) in [
+            (result(device ^ 1, presets), "another device file"),
+            (result(device, presets ^ 1), "another presets"),
+        ] {
+            let error = other.unwrap_err();
+            assert!(error.contains(what), "{error}");
+        }
+    }
 
     fn is_at_rest(counts: impl Fn(u32) -> (i32, i32), frames: u32) -> bool {
         let frames = (0..frames).map(|seq| Frame {

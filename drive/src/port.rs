@@ -4,7 +4,7 @@ mod serial;
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::net::{Shutdown, TcpStream, ToSocketAddrs as _};
+use std::net::{Shutdown, TcpStream, ToSocketAddrs};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
@@ -261,9 +261,10 @@ fn is_silence(error: &io::Error) -> bool {
     kinds.contains(&error.kind())
 }
 
-fn connect(address: &str) -> io::Result<TcpStream> {
+/// Connects to the first of the addresses of a name that has a server.
+fn connect(name: impl ToSocketAddrs) -> io::Result<TcpStream> {
     let mut failed = ErrorKind::AddrNotAvailable.into();
-    for address in address.to_socket_addrs()? {
+    for address in name.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, CONNECT) {
             Ok(stream) => {
                 stream.set_nodelay(true)?;
@@ -279,6 +280,8 @@ fn connect(address: &str) -> io::Result<TcpStream> {
 
 #[cfg(test)]
 mod tests {
+    use std::net::TcpListener;
+
     use super::*;
 
     #[test]
@@ -315,6 +318,27 @@ mod tests {
             assert!(error.to_string().ends_with(said), "{error}");
             assert_eq!(error.status(), 2);
         }
+    }
+
+    #[test]
+    fn port_that_the_system_refuses_has_its_remedy() {
+        let said = |kind: ErrorKind| unopened("/dev/ttyACM0", &kind.into());
+        let denied = said(ErrorKind::PermissionDenied);
+        assert!(
+            denied.ends_with("add the user to the group of the port (dialout) and log in again")
+        );
+        assert!(said(ErrorKind::NotFound).ends_with("cargo drive list shows the ports"));
+    }
+
+    /// The name localhost may be that of an address without a server too.
+    #[test]
+    fn connection_is_to_the_address_that_has_a_server() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let closed = "127.0.0.1:1".parse().unwrap();
+        let addresses = [closed, listener.local_addr().unwrap()];
+        let stream = connect(&addresses[..]).unwrap();
+        assert_eq!(stream.peer_addr().unwrap(), addresses[1]);
+        assert!(connect(&addresses[..1]).is_err());
     }
 
     #[test]

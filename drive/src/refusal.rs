@@ -93,12 +93,32 @@ mod tests {
             unverified: 5,
         };
         assert_eq!(refusal(&none, &none), None);
-        let unknown = Rejected { unknown: 5, ..none };
-        assert!(
-            refusal(&none, &unknown)
-                .unwrap()
-                .contains("does not have it")
-        );
+        for (now, reason) in [
+            (
+                Rejected {
+                    not_finite: 3,
+                    ..none
+                },
+                "not finite",
+            ),
+            (
+                Rejected {
+                    out_of_bounds: 4,
+                    ..none
+                },
+                "out of bounds",
+            ),
+            (Rejected { unknown: 5, ..none }, "does not have it"),
+            (
+                Rejected {
+                    unverified: 6,
+                    ..none
+                },
+                "run cargo drive bring-up",
+            ),
+        ] {
+            assert!(refusal(&none, &now).unwrap().contains(reason), "{reason}");
+        }
         // The counts wrap.
         let most = Rejected {
             not_finite: u32::MAX,

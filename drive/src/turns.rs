@@ -70,15 +70,19 @@ pub(crate) fn by_hand(board: &mut Board, answer: &Answer) -> Result<Vec<Index>, 
     let mut pulses = Vec::new();
     for _ in 0..PARTS {
         pulses.extend(observe(board, answer, plan(None, false, PART_S))?.indices);
-        if ENCODERS
-            .iter()
-            .all(|encoder| !turns(&pulses, encoder).is_empty())
-        {
+        if have_turned(&pulses) {
             break;
         }
     }
     board.note(format_args!("take your hands off the device"));
     Ok(pulses)
+}
+
+/// Whether both shafts have made a turn.
+fn have_turned(pulses: &[Index]) -> bool {
+    ENCODERS
+        .iter()
+        .all(|encoder| !turns(pulses, encoder).is_empty())
 }
 
 /// Prints the lines on both encoders, and adds them to those before. An encoder without a turn has a line that
@@ -246,15 +250,27 @@ mod tests {
         }
     }
 
-    #[test]
-    fn each_encoder_has_its_own_pulses() {
-        let of_small = |(pulses_small, count_small)| Index {
+    /// The messages of a turn of the small encoder.
+    fn turn_of_small() -> [Index; 2] {
+        let turn = [(1, 10), (2, 10 + ENCODERS[1].counts_per_turn)];
+        turn.map(|(pulses_small, count_small)| Index {
             pulses_small,
             count_small,
             ..NOTHING
-        };
-        let seen = [(1, 10), (2, 10 + ENCODERS[1].counts_per_turn)].map(of_small);
-        let [large, handle] = found(&seen);
+        })
+    }
+
+    #[test]
+    fn turns_by_hand_end_with_those_of_both_shafts() {
+        let mut seen = pulses(&[(1, 10), (2, 10 + N)]);
+        assert!(!have_turned(&seen) && !have_turned(&turn_of_small()));
+        seen.extend(turn_of_small());
+        assert!(have_turned(&seen));
+    }
+
+    #[test]
+    fn each_encoder_has_its_own_pulses() {
+        let [large, handle] = found(&turn_of_small());
         assert_eq!(large, ("turn, large encoder", None));
         assert_eq!(handle.0, "turn, handle encoder");
         assert!(handle.1.expect("a turn").is_ok());

@@ -131,6 +131,24 @@ pub(crate) mod tests {
         assert!(!is_enabled(&Frame { state: 3, ..FRAME }));
     }
 
+    /// The command clears the cause: a frame with one is from before.
+    #[test]
+    fn board_is_disarmed_in_the_state_boot_without_a_cause() {
+        for (state, cause, is) in [
+            (Mode::Boot, Stop::None, true),
+            (Mode::Boot, Stop::Stall, false),
+            (Mode::Safe, Stop::None, false),
+            (Mode::Armed, Stop::None, false),
+        ] {
+            let frame = Frame {
+                state: state as u8,
+                cause: cause as u8,
+                ..FRAME
+            };
+            assert_eq!(is_disarmed(&frame), is, "{state:?} {cause:?}");
+        }
+    }
+
     #[test]
     fn frames_are_selected_at_intervals_of_the_board() {
         let mut every = Every::new(0.1, 10_000);

@@ -215,6 +215,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn durations_and_waits_have_their_ranges() {
+        for text in ["0", "-1", "100001", "inf", "nan", "x"] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
+        assert_eq!(seconds("1e-3"), Ok(1e-3));
+        assert_eq!(seconds("100000"), Ok(1e5));
+        for text in ["0.09", "61", "nan", "x"] {
+            assert!(patience(text).is_err(), "{text}");
+        }
+        assert_eq!(patience("0.1"), Ok(0.1));
+        assert_eq!(patience("60"), Ok(60.0));
+    }
+
+    #[test]
     fn help_and_page_have_the_currents_of_the_strokes() {
         let strokes = Excite::STROKES;
         let currents = format!("{} A and {} A", strokes.large.get(), strokes.small.get());

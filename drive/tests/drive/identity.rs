@@ -80,6 +80,9 @@ fn board_of_another_protocol_gets_no_command_but_disarm() {
         &["torque", "0.01", "--seconds", "1"],
         &["estimator", "foaw-end-fit"],
         &["keep-alive", "--seconds", "1"],
+        &["settings", "serial=7"],
+        &["bring-up"],
+        &["calibrate"],
         &["watch", "--seconds", "1"],
         &["record", "--out", "-", "--seconds", "1"],
     ] {
