@@ -15,6 +15,20 @@ fn options_that_cannot_be_used_are_named_before_the_image_is_read() {
     let folder = env!("CARGO_MANIFEST_DIR");
     for (arguments, said) in [
         (["--seconds", "-1"], "--seconds -1: must be above 0"),
+        (["--seconds", "3601"], "and at most 3600 s"),
+        (["--seconds", "nan"], "must be above 0"),
+        (
+            ["--fault", "stuck-a@-1"],
+            "'-1' is not a time; give 0 to 3600 s",
+        ),
+        (
+            ["--fault", "stuck-a@3.5"],
+            "--fault stuck-a@3.5: the run ends at 3 s; give a longer --seconds",
+        ),
+        (
+            ["--estimator", "1@4"],
+            "--estimator 1@4: the run ends at 3 s",
+        ),
         (["--seed", "-1"], "invalid value '-1' for '--seed <N>'"),
         (["--link", "-1"], "invalid value '-1' for '--link <PORT>'"),
         (
@@ -36,6 +50,7 @@ fn options_that_cannot_be_used_are_named_before_the_image_is_read() {
 #[test]
 fn outputs_that_are_one_file_or_an_input_are_refused() {
     let image = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    let device = concat!(env!("CARGO_MANIFEST_DIR"), "/src/lib.rs");
     for (arguments, said) in [
         (
             ["--record", "x.csv", "--rtt", "./x.csv"],
@@ -48,6 +63,10 @@ fn outputs_that_are_one_file_or_an_input_are_refused() {
         (
             ["--seconds", "1", "--record", image],
             "Cargo.toml: would overwrite the input",
+        ),
+        (
+            ["--device", device, "--rtt", device],
+            "lib.rs: would overwrite the input",
         ),
     ] {
         let error = error(&[&arguments[..], &["--image", image]].concat());
