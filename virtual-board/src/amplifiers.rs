@@ -173,3 +173,28 @@ impl Amplifiers {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroU64;
+
+    use super::*;
+    use crate::board::{CORE_HZ, ControllerBoard};
+
+    #[test]
+    fn pressed_emergency_stop_stays_open_after_a_glitch() {
+        let rate = NonZeroU64::new(CORE_HZ).unwrap();
+        let mut part = ControllerBoard::new(8_000_000, rate).unwrap().part;
+        let mut amplifiers = Amplifiers::new(&[]);
+        let mut loop_at = |amplifiers: &mut Amplifiers, ns| {
+            amplifiers.follow(&mut part, VirtualNanos(ns));
+            amplifiers.driven.and_then(|wires| wires.interlock)
+        };
+        amplifiers.stop_until(20_000);
+        assert_eq!(loop_at(&mut amplifiers, 19_999), None);
+        assert_eq!(loop_at(&mut amplifiers, 20_000), Some(true));
+        amplifiers.stop_until(u64::MAX);
+        amplifiers.stop_until(50_000);
+        assert_eq!(loop_at(&mut amplifiers, 60_000), None);
+    }
+}

@@ -258,6 +258,27 @@ mod tests {
         assert_eq!(wire.down, [(0, b'!')]);
     }
 
+    /// A client that is too fast for the serial port waits: its bytes are neither lost nor stored here.
+    #[test]
+    fn bytes_that_the_board_has_not_taken_hold_back_the_client() {
+        let bridge = Bridge::bind(0).unwrap();
+        let mut client = TcpStream::connect(bridge.address()).unwrap();
+        let mut live = Served::new(bridge.listener, Arc::default());
+        let mut wire = Wire::default();
+        let sent: Vec<u8> = (0..=255).cycle().take(4 * WAITING).collect();
+        client.write_all(&sent).unwrap();
+        let mut came = Vec::new();
+        while came.len() < sent.len() {
+            while wire.down.len() < WAITING {
+                live.look(&mut wire, 0);
+            }
+            live.look(&mut wire, 0);
+            assert_eq!(wire.down.len(), WAITING);
+            came.extend(wire.down.drain(..).map(|(_, byte)| byte));
+        }
+        assert_eq!(came, sent);
+    }
+
     /// A computer that is busy for some time leaves a board that is not too fast for its client afterwards.
     #[test]
     fn lag_is_not_made_up_for() {

@@ -86,6 +86,18 @@ mod tests {
     }
 
     #[test]
+    fn commands_have_the_kinds_of_the_documented_table() {
+        for (command, kind) in [
+            (Command::Arm, 1),
+            (Command::Disarm, 2),
+            (Command::KeepAlive, 5),
+        ] {
+            let expected = [0xA5, kind, 0, 0, 0, 0, 0, 0, 0, 0];
+            assert_eq!(command.encode()[..10], expected, "{command:?}");
+        }
+    }
+
+    #[test]
     fn scenes_have_the_numbers_of_the_documented_table() {
         for (scene, number) in [
             (SceneKind::Off, 0),

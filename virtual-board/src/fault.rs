@@ -158,6 +158,15 @@ impl std::str::FromStr for Fault {
 mod tests {
     use super::*;
 
+    /// The time of such a fault has no meaning, which the help tells.
+    #[test]
+    fn faults_from_power_up_have_no_time() {
+        for fault in Fault::all() {
+            let told = fault.description().ends_with("for any S");
+            assert_eq!(fault.acts_from_power_up(), told, "{fault:?}");
+        }
+    }
+
     #[test]
     fn every_fault_is_found_by_its_name() {
         let mut names = std::collections::BTreeSet::new();

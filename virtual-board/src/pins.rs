@@ -190,3 +190,29 @@ fn function(part: &mut Part, At(port, pin): At) -> Option<u8> {
     let (_, registers) = part.stm32.port(port);
     Gpio::function(Pin::new(pin).expect("below 16"), registers)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroU64;
+
+    use super::*;
+    use crate::board::{CORE_HZ, ControllerBoard};
+
+    /// A pin is an input after a reset, as those of the ready lines have to be.
+    #[test]
+    fn pins_that_are_not_configured_are_told() {
+        let rate = NonZeroU64::new(CORE_HZ).unwrap();
+        let mut part = ControllerBoard::new(8_000_000, rate).unwrap().part;
+        let told = complaints(&mut part);
+        assert_eq!(told.len(), 2 + 2 + 2 + 5, "{told:?}");
+        for said in [
+            "PD12 (large encoder A, TIM4_CH1) is Input; it must be Function(2)",
+            "PC7 (small encoder B, TIM3_CH2) is Input; it must be Function(2)",
+            "PD9 (serial port in, USART3_RX) is Input; it must be Function(7)",
+            "PA4 (large set value, DAC_OUT1) is Input; it must be Analog",
+            "PA6 (interlock, TIM8_BKIN) is Input; it must be Function(3)",
+        ] {
+            assert!(told.iter().any(|line| line == said), "{said}: {told:?}");
+        }
+    }
+}
