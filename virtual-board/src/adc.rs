@@ -104,3 +104,62 @@ pub struct Common;
 impl Device for Common {
     type Register = c_adc::Register;
 }
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroU64;
+
+    use rigless::mcu::Operate as _;
+    use rigless::soc::Width;
+    use rigless::time::VirtualNanos;
+
+    use super::{ADON, CONT, NOISE, SWSTART};
+    use crate::board::{CORE_HZ, ControllerBoard};
+
+    /// `RCC_APB2ENR` and its bit `ADC1EN`, RM0090 6.3.14; `ADC_CR2`, `ADC_SQR1`, `ADC_SQR3` and `ADC_DR` of
+    /// ADC1, 13.13.18.
+    const RCC_APB2ENR: u64 = 0x4002_3844;
+    const ADC1EN: u64 = 1 << 8;
+    const CR2: u64 = 0x4001_2008;
+    const SQR1: u64 = 0x4001_202C;
+    const SQR3: u64 = 0x4001_2034;
+    const DR: u64 = 0x4001_204C;
+    /// Channel of PA3.
+    const PA3: u64 = 3;
+
+    /// The result with this level on PA3 after these values of `SQR1`, `SQR3` and `CR2`.
+    fn result(level: Option<f64>, [sqr1, sqr3, cr2]: [u64; 3]) -> f64 {
+        let rate = NonZeroU64::new(CORE_HZ).unwrap();
+        let mut part = ControllerBoard::new(8_000_000, rate).unwrap().part;
+        part.drive_analog([level, None, None]);
+        let at = VirtualNanos(0);
+        for (register, value) in [
+            (RCC_APB2ENR, ADC1EN),
+            (SQR1, sqr1),
+            (SQR3, sqr3),
+            (CR2, cr2),
+        ] {
+            part.write(at, register, Width::W32, value).unwrap();
+        }
+        part.read(at, DR, Width::W32).unwrap() as f64
+    }
+
+    #[test]
+    fn converter_reads_its_channel_again_and_again_or_nothing() {
+        let on = ADON | CONT | SWSTART;
+        let read = result(Some(1000.0), [0, PA3, on]);
+        assert!((read - 1000.0).abs() <= NOISE, "{read}");
+        assert_eq!(result(Some(5000.0), [0, PA3, on]), 4095.0);
+        // Not analogue; two channels; another channel; not started; once; off.
+        assert_eq!(result(None, [0, PA3, on]), 0.0);
+        for other in [
+            [1 << 20, PA3, on],
+            [0, PA3 + 1, on],
+            [0, PA3, ADON | CONT],
+            [0, PA3, ADON | SWSTART],
+            [0, PA3, CONT | SWSTART],
+        ] {
+            assert_eq!(result(Some(1000.0), other), 0.0, "{other:?}");
+        }
+    }
+}

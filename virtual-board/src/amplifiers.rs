@@ -181,8 +181,52 @@ mod tests {
     use super::*;
     use crate::board::{CORE_HZ, ControllerBoard};
 
+    const ENABLED: Amplifier = Amplifier {
+        enabled_ns: Some(0),
+        ..Amplifier::WELL
+    };
+
+    /// Whether it drives, and the level on its ready line.
     #[test]
-    fn pressed_emergency_stop_stays_open_after_a_glitch() {
+    fn amplifier_without_supply_or_enable_drives_nothing() {
+        let [mut unready, mut cut, mut unpowered, mut disabled] = [ENABLED; 4];
+        (unready.unready, cut.cut) = (true, true);
+        (unpowered.powered, disabled.enabled_ns) = (false, None);
+        for (it, expected) in [
+            (ENABLED, (true, Some(true))),
+            (unready, (true, None)),
+            (cut, (true, None)),
+            (unpowered, (false, None)),
+            (disabled, (false, None)),
+        ] {
+            let now = READY_AFTER_NS;
+            assert_eq!((it.drives(now), it.ready(now)), expected, "{it:?}");
+            assert!(!it.drives(now - 1));
+        }
+    }
+
+    #[test]
+    fn monitor_has_half_of_its_range_at_half_of_its_current() {
+        let input = Monitor {
+            offset: 10.0,
+            amps: 7.5,
+        };
+        assert_eq!(ENABLED.monitor(3.75, input), 2048.0 + 10.0 + 1024.0);
+        let monitor_cut = Amplifier {
+            monitor_cut: true,
+            ..ENABLED
+        };
+        let unpowered = Amplifier {
+            powered: false,
+            ..ENABLED
+        };
+        for pulled_down in [monitor_cut, unpowered] {
+            assert_eq!(pulled_down.monitor(3.75, input), 0.0);
+        }
+    }
+
+    #[test]
+    fn emergency_stop_and_lost_supply_open_the_loop() {
         let rate = NonZeroU64::new(CORE_HZ).unwrap();
         let mut part = ControllerBoard::new(8_000_000, rate).unwrap().part;
         let mut amplifiers = Amplifiers::new(&[]);
@@ -193,6 +237,9 @@ mod tests {
         amplifiers.stop_until(20_000);
         assert_eq!(loop_at(&mut amplifiers, 19_999), None);
         assert_eq!(loop_at(&mut amplifiers, 20_000), Some(true));
+        amplifiers.each[LARGE].powered = false;
+        assert_eq!(loop_at(&mut amplifiers, 21_000), None);
+        amplifiers.each[LARGE].powered = true;
         amplifiers.stop_until(u64::MAX);
         amplifiers.stop_until(50_000);
         assert_eq!(loop_at(&mut amplifiers, 60_000), None);

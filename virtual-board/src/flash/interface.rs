@@ -362,6 +362,16 @@ mod tests {
     }
 
     #[test]
+    fn erasure_while_a_byte_is_programmed_is_told() {
+        for (at_ns, told) in [(15_999, 1), (16_000, 0)] {
+            let mut part = unlocked(PG_SET);
+            part.store_to_flash(0, 5, &[0x5A]);
+            set(&mut part, at_ns, CR, ERASES_12);
+            assert_eq!(part.drain_told().len(), told, "{at_ns}");
+        }
+    }
+
+    #[test]
     fn erasure_of_the_image_is_told() {
         let mut part = unlocked(0);
         set(&mut part, 0, CR, 1 << 16 | 1 << 3 | 1 << 1);
