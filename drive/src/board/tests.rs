@@ -105,6 +105,23 @@ fn scene_is_selected_once_though_bytes_that_are_no_command_come() {
     assert_eq!(from.try_iter().filter(|it| *it == select).count(), 1);
 }
 
+/// Counts that come without an identity are no answer to a question.
+#[test]
+fn refused_scene_is_named_after_counts_without_a_question() {
+    let none = Rejected::default();
+    let now = Rejected {
+        unverified: 1,
+        ..none
+    };
+    let messages = [none.into(), Hello::default().into(), now.into()];
+    let (mut board, PipeEnd { to, from: _from }) = sent(&messages);
+    drop(to);
+    let plan = plan(Some(SceneKind::Wall), true, LONG);
+    let ended = follow(&mut board, &answer(), plan, &mut |_| ());
+    let said = format!("scene wall: the board refuses it: {UNVERIFIED}");
+    assert_eq!(ended, Err(Failure::Check(said)));
+}
+
 #[test]
 fn refusal_without_a_question_ends_a_session_that_sends_commands_alone() {
     for (keeps_alive, said) in [(true, UNVERIFIED), (false, "connection lost")] {
@@ -112,7 +129,7 @@ fn refusal_without_a_question_ends_a_session_that_sends_commands_alone() {
             unverified: 1,
             ..Rejected::default()
         };
-        let (mut board, PipeEnd { to, .. }) = sent(&[now.into()]);
+        let (mut board, PipeEnd { to, from: _from }) = sent(&[now.into()]);
         drop(to);
         let plan = plan(None, keeps_alive, LONG);
         let ended = follow(&mut board, &answer(), plan, &mut |_| ());
