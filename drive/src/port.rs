@@ -342,6 +342,17 @@ mod tests {
     }
 
     #[test]
+    fn port_of_another_program_is_told_from_parts_of_a_line() {
+        let (mut port, end) = Port::pipe("board");
+        let (begin, rest) = TAKEN.split_at(10);
+        for part in [begin, rest, b"more"] {
+            end.to.send(part.to_vec()).unwrap();
+            port.read(&mut [0; 100]).unwrap();
+            assert_eq!(port.is_taken(), part != begin);
+        }
+    }
+
+    #[test]
     fn only_port_is_the_default() {
         assert_eq!(only(&["/dev/ttyACM0".into()]).unwrap(), "/dev/ttyACM0");
         let two = only(&["/dev/ttyACM0".into(), "/dev/ttyUSB1".into()]).unwrap_err();

@@ -89,6 +89,14 @@ mod tests {
     }
 
     #[test]
+    fn product_of_another_device_is_left_to_its_board() {
+        let mut hello = hello(&[]);
+        hello.device ^= 1;
+        let strong = Tuning::new(SceneKind::Detents, "amplitude", 0.04).unwrap();
+        assert_eq!(Known::usual().set(&strong, &hello), Ok(()));
+    }
+
+    #[test]
     fn every_parameter_has_a_least_value_that_its_scene_takes() {
         for scene in SceneKind::ALL {
             let mut parameters = Parameters::default();

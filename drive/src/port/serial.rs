@@ -52,11 +52,13 @@ mod tests {
     use crate::port::Port;
 
     #[test]
-    fn serial_port_has_one_program_at_a_time() {
+    fn serial_port_has_the_rate_of_the_link_and_one_program_at_a_time() {
         let (_board, device) = SerialPort::pair().unwrap();
         let link = format!("/proc/self/fd/{}", device.as_raw_fd());
         let name = std::fs::read_link(link).unwrap();
         let name = name.to_str().unwrap();
+        let settings = open(name).unwrap().get_configuration().unwrap();
+        assert_eq!(settings.get_baud_rate().unwrap(), BAUD);
         let first = Port::open(Some(name)).unwrap();
         let Err(error) = Port::open(Some(name)) else {
             panic!("two programs");

@@ -271,16 +271,19 @@ fn bring_up_names_settings_that_allow_no_current_and_arms_nothing() {
         assert!(settings.set(setting, 0.0));
         let board = Board::new(Script {
             settings,
+            turns: Some([0; 2]),
             ..Script::default()
         });
-        let (output, commands) = board.run(&["bring-up"]);
-        let [shown, _] = text(&output);
+        let (output, commands) = board.run(&["bring-up", "--turns"]);
+        let [shown, said] = text(&output);
         assert_eq!(output.status.code(), Some(1), "{shown}");
         let line = shown.lines().last().unwrap_or_default();
         assert!(line.starts_with("FAIL  settings"), "{shown}");
         let name = setting.facts().name;
         assert!(line.contains(told) && line.contains(name), "{shown}");
         assert!(!commands.contains(&ARM), "{commands:?}");
+        // Nothing is asked of the person.
+        assert_eq!(said.lines().count(), 1, "{said}");
     }
 }
 

@@ -51,6 +51,7 @@ fn info_names_a_device_that_is_not_the_one_of_the_tool() {
     let board = Board::new(Script {
         hello: Hello {
             device: 1,
+            brown_out_reset: false,
             ..script.hello
         },
         ..script
@@ -59,6 +60,7 @@ fn info_names_a_device_that_is_not_the_one_of_the_tool() {
     let text = String::from_utf8(output.stdout).unwrap();
     let line = text.lines().find(|line| line.starts_with("device"));
     assert!(line.unwrap().contains("00000001; this tool is built for"));
+    assert!(text.contains("reset below 2.7 V  no\n"), "{text}");
 }
 
 #[test]
