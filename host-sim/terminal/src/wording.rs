@@ -72,9 +72,10 @@ pub fn quoted(argument: &OsStr) -> String {
 #[must_use]
 pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<_> = known.into_iter().collect();
+    let lower = name.to_lowercase();
     let nearest = known
         .iter()
-        .map(|other| (strsim::jaro_winkler(name, other), *other));
+        .map(|other| (strsim::jaro_winkler(&lower, &other.to_lowercase()), *other));
     let nearest = nearest.max_by(|(a, _), (b, _)| a.total_cmp(b));
     let all = known.join(", ");
     let name = name.escape_debug();
@@ -104,6 +105,8 @@ mod tests {
         let known = ["wall", "free-air", "excite"];
         let said = unknown("scene", "exite", known);
         assert!(said.starts_with("no scene 'exite'; did you mean excite? there are wall,"));
+        let capitals = unknown("scene", "WALL", known);
+        assert!(capitals.starts_with("no scene 'WALL'; did you mean wall?"));
         assert_eq!(
             unknown("scene", "q", known),
             "no scene 'q'; there are wall, free-air, excite"
