@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -21,6 +23,9 @@ def one_dimensional(values: Any, name: str) -> NDArray[Any]:
         array = np.asarray(values)
     except ValueError as error:
         raise ValueError(f"{name}: not an array of numbers: {error}") from None
+    if array.ndim == 0 and not isinstance(values, np.ndarray):
+        file = "; limpid.read_log reads a file" if isinstance(values, (str, PathLike)) else ""
+        raise ValueError(f"{name}: has the type {type(values).__name__}; pass an array or a list{file}")
     if array.ndim != 1:
         raise ValueError(
             f"{name}: has the shape {array.shape}; pass one dimension, for example array.ravel() or one column"
@@ -35,6 +40,8 @@ def as_number(value: Any, name: str, unit: str) -> float:
         number = None if isinstance(value, (str, bytes)) else float(value)
     except (TypeError, ValueError):
         number = None
+    except OverflowError:
+        number = float("inf")
     if number is None:
         raise TypeError(f"{name}: has the type {type(value).__name__}; pass a number ({unit})")
     if not (number > 0 and np.isfinite(number)):
@@ -45,6 +52,23 @@ def as_number(value: Any, name: str, unit: str) -> float:
 def _is_integer(value: Any) -> bool:
     # A bool is an int of Python.
     return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+
+
+def _integers(array: NDArray[Any], name: str) -> str:
+    """What to pass in the place of an array of another type."""
+    wrong = np.zeros(len(array), dtype=bool)
+    if array.dtype.kind == "f":
+        wrong = ~np.isfinite(array)
+    elif array.dtype.kind == "O":
+        wrong = np.array([not _is_integer(value) for value in array])
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        return (
+            f", and row {row} is {array[row]}; pass integers: fill such rows, or remove them from all columns and "
+            "pass t"
+        )
+    example = f", for example numpy.rint({name}).astype(numpy.int64)" if array.dtype.kind == "f" else ""
+    return f"; pass integers{example}"
 
 
 def as_counts(values: IntLike, name: str) -> NDArray[np.uint32]:
@@ -58,10 +82,7 @@ def as_counts(values: IntLike, name: str) -> NDArray[np.uint32]:
     if array.dtype.kind == "O" and all(map(_is_integer, array)):
         array = np.array([int(value) & 0xFFFFFFFF for value in array], dtype=np.uint32)
     if array.dtype.kind not in "iu":
-        raise ValueError(
-            f"{name}: has the type {array.dtype}; pass integers, for example "
-            f"numpy.rint({name}).astype(numpy.int64)"
-        )
+        raise ValueError(f"{name}: has the type {array.dtype}{_integers(array, name)}")
     return np.require(array.astype(np.uint32, copy=False), requirements=["C", "A"])
 
 
@@ -69,7 +90,9 @@ def as_floats(values: FloatLike, name: str, unit: str, *, nan: bool = False) -> 
     """Finite numbers; with ``nan``, also NaN."""
     array = one_dimensional(values, name)
     if array.dtype.kind not in "iuf":
-        raise ValueError(f"{name}: has the type {array.dtype}; pass real numbers ({unit})")
+        dates = array.dtype.kind in "mM" and unit == "s"
+        example = f", for example ({name} - {name}[0]) / numpy.timedelta64(1, 's')" if dates else ""
+        raise ValueError(f"{name}: has the type {array.dtype}; pass real numbers ({unit}){example}")
     array = np.require(array, dtype=np.float64, requirements=["C", "A"])
     wrong = np.isinf(array) if nan else ~np.isfinite(array)
     if wrong.any():
@@ -78,6 +101,17 @@ def as_floats(values: FloatLike, name: str, unit: str, *, nan: bool = False) -> 
             f"{name}: row {row} is {array[row]}; remove the row, or fill it with a finite number ({unit})"
         )
     return array
+
+
+def as_names(values: Any, name: str, example: str) -> list[str]:
+    """A name or several as a list."""
+    if isinstance(values, str):
+        return [values]
+    names = list(values) if isinstance(values, Iterable) else [values]
+    for value in names:
+        if not isinstance(value, str):
+            raise TypeError(f"{name}: has the type {type(value).__name__}; pass {example}")
+    return names
 
 
 def same_rows(columns: dict[str, NDArray[Any] | None]) -> None:

@@ -53,6 +53,9 @@ class Estimator(_Estimator):
     (0.0, 1.534)
     """
 
+    # A value that is set under another name, as modulus, would have no effect: it is an AttributeError.
+    __slots__ = ("__weakref__",)
+
     def process(
         self,
         counts: _arrays.IntLike,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Sized
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy as np
 
@@ -22,10 +22,10 @@ def simulate(
     scene: str | None = None,
     rate: float = 10_000.0,
     seconds: float | None = None,
-    seed: int = 1,
+    seed: SupportsIndex = 1,
     hand: str | None = None,
-    every: int | None = None,
-    counts_per_rev: int | None = None,
+    every: SupportsIndex | None = None,
+    counts_per_rev: SupportsIndex | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Recording:
     """Simulates the dual-stage device and returns what its encoders saw, with the true velocity.
@@ -67,10 +67,10 @@ def simulate(
 
 def coarsen(
     path: str | PathLike[str],
-    counts_per_rev: int,
+    counts_per_rev: SupportsIndex,
     *,
     rate: float = 1000.0,
-    fine_counts_per_rev: int | None = None,
+    fine_counts_per_rev: SupportsIndex | None = None,
     phase: float = 0.37,
     seconds: float | None = None,
     columns: Columns = (),
@@ -124,7 +124,7 @@ def decode(
     hall: Sequence[str | int] | None = None,
     columns: Columns = (),
     row_rate: float | None = None,
-    counts_per_rev: int | None = None,
+    counts_per_rev: SupportsIndex | None = None,
 ) -> Recording:
     """The counts and the times of the edges in a capture of an encoder's lines.
 
@@ -152,7 +152,7 @@ def decode(
     if lines is not None and hall is not None:
         raise ValueError("lines and hall: pass one of them")
     for name, given, number in (("lines", lines, 2), ("hall", hall, 3)):
-        if given is not None and (isinstance(given, str) or len(given) != number):
+        if given is not None and (isinstance(given, str) or not isinstance(given, Sized) or len(given) != number):
             raise ValueError(f"{name}={given!r}: give the names of {number} columns")
     named = lines if hall is None else hall
     names = None if named is None else [str(name) for name in named]
@@ -257,10 +257,12 @@ class Recommendation:
 
 
 def _logs(logs: Recording | Iterable[Recording]) -> list[Recording]:
-    recordings = [logs] if isinstance(logs, Recording) else list(logs)
+    recordings: list[Any] = list(logs) if isinstance(logs, Iterable) else [logs]
     if not recordings or not all(isinstance(log, Recording) for log in recordings):
         raise ValueError("logs: pass a limpid.Recording or several, for example limpid.read_log('motor.csv')")
-    for recording in recordings:
+    for row, recording in enumerate(recordings):
+        if any(recording is other for other in recordings[:row]):
+            raise ValueError(f"logs: {recording.name} is given twice; pass each recording once")
         recording._check()
     return recordings
 
@@ -269,7 +271,7 @@ def recommend(
     logs: Recording | Iterable[Recording],
     *,
     instructions: float = 100.0,
-    counts_per_rev: int | None = None,
+    counts_per_rev: SupportsIndex | None = None,
     presets: str | PathLike[str] | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Recommendation:
@@ -337,11 +339,11 @@ def tune(
     rate: float | None = None,
     estimators: str | Sequence[str] = (),
     scenarios: str | Sequence[str] = (),
-    seeds: int | None = None,
+    seeds: SupportsIndex | None = None,
     seconds: float | None = None,
     perturbed: bool | None = None,
     friction: bool = True,
-    counts_per_rev: int | None = None,
+    counts_per_rev: SupportsIndex | None = None,
     presets: str | PathLike[str] | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Tuning:
@@ -369,8 +371,8 @@ def tune(
     device
         Path of a device file (TOML), or a dict with its sections.
     """
-    names = [estimators] if isinstance(estimators, str) else list(estimators)
-    motions = [scenarios] if isinstance(scenarios, str) else list(scenarios)
+    names = _arrays.as_names(estimators, "estimators", "a name or names of limpid.estimators()")
+    motions = _arrays.as_names(scenarios, "scenarios", "a name or names of limpid.scenarios()")
     if (logs is None) == (rate is None):
         raise ValueError("logs and rate: pass recordings, or the rate at which scenarios are simulated (Hz)")
     rows: list[Any] = []

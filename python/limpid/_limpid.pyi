@@ -25,7 +25,7 @@ __version__: str
 
 def estimators() -> list[dict[str, Any]]: ...
 def parameters(
-    estimator: str, rate: float, counts_per_rev: int | None, presets: _Path | None, device: _Device | None
+    estimator: str, rate: float, counts_per_rev: SupportsIndex | None, presets: _Path | None, device: _Device | None
 ) -> dict[str, float]: ...
 def scenarios() -> list[tuple[str, str]]: ...
 def device(device: _Device | None) -> str: ...
@@ -37,14 +37,14 @@ def read_log(
     modulus: list[str],
     row_rate: float | None,
     resample: float | None,
-    counts_per_rev: int | None,
+    counts_per_rev: SupportsIndex | None,
     device: _Device | None,
 ) -> dict[str, Any]: ...
 def replay(
     recording: Recording,
     estimator: str,
-    counts_per_rev: int | None,
-    parameters: dict[str, float],
+    counts_per_rev: SupportsIndex | None,
+    parameters: Mapping[str, float] | None,
     presets: _Path | None,
     device: _Device | None,
     resample: float | None,
@@ -56,11 +56,11 @@ class Estimator:
         estimator: str = "imm",
         rate: float = 1000.0,
         *,
-        counts_per_rev: int | None = None,
+        counts_per_rev: SupportsIndex | None = None,
         parameters: Mapping[str, float] | None = None,
         presets: _Path | None = None,
         device: _Device | None = None,
-        modulus: int | dict[str, int] | None = None,
+        modulus: SupportsIndex | Mapping[str, SupportsIndex] | None = None,
         varying: bool = False,
     ) -> Estimator: ...
     @property
@@ -105,10 +105,10 @@ def simulate(
     scene: str | None,
     rate: float,
     seconds: float | None,
-    seed: int,
+    seed: SupportsIndex,
     hand: str,
-    every: int,
-    counts_per_rev: int | None,
+    every: SupportsIndex,
+    counts_per_rev: SupportsIndex | None,
     device: _Device | None,
 ) -> dict[str, Any]: ...
 def coarsen(
@@ -116,8 +116,8 @@ def coarsen(
     columns: list[str],
     modulus: list[str],
     row_rate: float | None,
-    counts_per_rev: int,
-    fine_counts_per_rev: int | None,
+    counts_per_rev: SupportsIndex,
+    fine_counts_per_rev: SupportsIndex | None,
     rate: float,
     phase: float,
     seconds: float | None,
@@ -129,7 +129,7 @@ def decode(
     lines: list[str] | None,
     columns: list[str],
     row_rate: float | None,
-    counts_per_rev: int | None,
+    counts_per_rev: SupportsIndex | None,
 ) -> dict[str, Any]: ...
 def scores(
     velocity: NDArray[np.float32], true_velocity: NDArray[np.float64], rate: float, device: _Device | None
@@ -138,14 +138,14 @@ def score_fields() -> list[tuple[str, str, str]]: ...
 def recommend(
     logs: list[Recording],
     instructions: float,
-    counts_per_rev: int | None,
+    counts_per_rev: SupportsIndex | None,
     presets: _Path | None,
     device: _Device | None,
 ) -> tuple[str, str, list[str]]: ...
 def tune_logs(
     logs: list[Recording],
     estimators: list[str],
-    counts_per_rev: int | None,
+    counts_per_rev: SupportsIndex | None,
     presets: _Path | None,
     device: _Device | None,
 ) -> tuple[str, list[tuple[str, tuple[float, float], tuple[float, float], bool]], list[str]]: ...
@@ -153,11 +153,11 @@ def tune_scenarios(
     rate: float,
     estimators: list[str],
     scenarios: list[str],
-    seeds: int | None,
+    seeds: SupportsIndex | None,
     seconds: float | None,
     perturbed: bool | None,
     friction: bool,
-    counts_per_rev: int | None,
+    counts_per_rev: SupportsIndex | None,
     device: _Device | None,
 ) -> tuple[str, list[str]]: ...
 def values_of_presets(text: str) -> list[tuple[str, dict[str, float]]]: ...

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Any, SupportsIndex
 
 from . import _limpid
 
@@ -54,7 +54,7 @@ def parameters(
     estimator: str,
     rate: float,
     *,
-    counts_per_rev: int | None = None,
+    counts_per_rev: SupportsIndex | None = None,
     presets: str | PathLike[str] | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> dict[str, float]:

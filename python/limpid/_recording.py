@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +55,7 @@ class Recording:
         edge_boundary: _arrays.IntLike | None = None,
         true_velocity: _arrays.FloatLike | None = None,
         current_small: _arrays.FloatLike | None = None,
-        counts_per_rev: int | None = None,
+        counts_per_rev: SupportsIndex | None = None,
         name: str = "recording",
         notes: Sequence[str] = (),
     ) -> None:
@@ -68,7 +69,7 @@ class Recording:
         self._t: NDArray[np.float64] | None = t
         self.name = name
         self.notes = list(notes)
-        self.counts_per_rev = counts_per_rev
+        self.counts_per_rev = None if counts_per_rev is None else _limpid.checked_counts_per_rev(counts_per_rev)
         self._check_columns()
         if (rate is None) == (self._t is None):
             raise ValueError("rate and t: pass one of them: the rate of the rows (Hz), or the time of each row (s)")
@@ -77,11 +78,17 @@ class Recording:
         assert rate is not None
         self.rate = rate
         self._check_numbers()
+        self._rate_of_t = None if self._t is None else self.rate
 
     def _check(self) -> None:
         """Checks the attributes, some of which a user may have replaced."""
         self._check_columns()
         self._check_numbers()
+        if self._rate_of_t is not None and self.rate != self._rate_of_t:
+            raise ValueError(
+                f"rate={self.rate}: the rows have times, which are {self._rate_of_t} Hz; leave the rate as it is, or "
+                "make a Recording with this rate in the place of t"
+            )
 
     def _check_columns(self) -> None:
         columns = _arrays.rows(self.counts, self.coupled, self.current, self.edge_age, self.edge_boundary)
@@ -96,6 +103,8 @@ class Recording:
         vars(self).update(columns)
 
     def _check_numbers(self) -> None:
+        if not isinstance(self.name, str):
+            raise TypeError(f"name: has the type {type(self.name).__name__}; pass a str")
         self.rate = _arrays.as_number(self.rate, "rate", "Hz")
         if self.counts_per_rev is not None:
             self.counts_per_rev = _limpid.checked_counts_per_rev(self.counts_per_rev)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +51,7 @@ def replay(
     rate: float | None = None,
     *,
     t: _arrays.FloatLike | None = None,
-    counts_per_rev: int | None = None,
+    counts_per_rev: SupportsIndex | None = None,
     estimator: str = "imm",
     current: _arrays.FloatLike | None = None,
     coupled: _arrays.IntLike | None = None,
@@ -114,7 +114,7 @@ def replay(
         recording,
         estimator,
         counts_per_rev,
-        dict(parameters or {}),
+        parameters,
         presets,
         device,
         resample,
@@ -134,10 +134,10 @@ def replay(
     )
 
 
-Columns = Mapping[str, str] | Sequence[str] | str
+Columns = Mapping[str, str | int] | Sequence[str] | str
 """The type of ``columns``."""
 
-Modulus = int | Mapping[str, int] | None
+Modulus = SupportsIndex | Mapping[str, SupportsIndex] | None
 """The type of ``modulus``."""
 
 
@@ -149,7 +149,7 @@ def read_log(
     modulus: Modulus = None,
     row_rate: float | None = None,
     resample: float | None = None,
-    counts_per_rev: int | None = None,
+    counts_per_rev: SupportsIndex | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Recording:
     """Reads a log as the commands of this project read it.
@@ -189,10 +189,10 @@ def column_options(columns: Columns, modulus: Modulus) -> tuple[list[str], list[
     """The options ``--column`` and ``--modulus`` of the commands."""
     if isinstance(columns, Mapping):
         columns = [f"{ours}={theirs}" for ours, theirs in columns.items()]
-    elif isinstance(columns, str):
-        columns = [columns]
+    else:
+        columns = _arrays.as_names(columns, "columns", "a dict, for example {'t': 'time_ms:ms'}")
     if isinstance(modulus, Mapping):
         moduli = [f"{column}={number}" for column, number in modulus.items()]
     else:
         moduli = [] if modulus is None else [str(modulus)]
-    return list(columns), moduli
+    return columns, moduli

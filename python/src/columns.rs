@@ -6,7 +6,7 @@ use recordings::recording::Recording;
 use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
-use crate::error::value_error;
+use crate::error::{of_times, value_error};
 use crate::integer::CountsPerRev;
 
 /// The arrays of a `limpid.Recording`, which checks their types and lengths before each call. The attribute `_t` is
@@ -107,6 +107,7 @@ pub(crate) fn clock(t: PyReadonlyArray1<'_, f64>, name: &str) -> PyResult<f64> {
         counts_large: vec![0; t.len()],
         ..Trace::default()
     };
-    let recording = Recording::of_columns(t, columns, name).map_err(value_error)?;
+    let recording = Recording::of_columns(t, columns, name)
+        .map_err(|failure| value_error(of_times(&failure.to_string())))?;
     Ok(recording.trace.rate_hz)
 }

@@ -44,6 +44,25 @@ pub(crate) fn of_arrays(note: &str) -> String {
     in_python(&unwrapped(note, "counts_small", "coupled"))
 }
 
+/// A message on the times of arrays, which have no unit that an option states.
+pub(crate) fn of_times(message: &str) -> String {
+    message.replace(", which --column t=NAME:ms states", ", and multiply it")
+}
+
+/// A message on recordings in memory: `recommend` and `tune` have no `resample`, and the reader of logs has it.
+pub(crate) fn of_logs(message: &str) -> String {
+    let Some((before, after)) = message.split_once("--resample") else {
+        return of_arrays(message);
+    };
+    let number = after
+        .strip_prefix(' ')
+        .map_or(0, |value| 1 + value_end(value));
+    let (number, after) = after.split_at(number);
+    of_arrays(&format!(
+        "{before}--resample{number} of limpid.read_log{after}"
+    ))
+}
+
 /// Where a number or a name at the begin of `text` ends.
 fn value_end(text: &str) -> usize {
     text.find(|c: char| !c.is_ascii_alphanumeric())
@@ -113,7 +132,9 @@ pub(crate) fn in_python(message: &str) -> String {
         rest = value.filter(is_value).unwrap_or(after);
     }
     text.push_str(rest);
-    text.replace("host-sim estimators", "limpid.estimators()")
+    text.replace("lines=A B", "lines=['A', 'B']")
+        .replace("hall=U V W", "hall=['U', 'V', 'W']")
+        .replace("host-sim estimators", "limpid.estimators()")
         .replace("host-sim scenarios", "limpid.scenarios()")
         .replace("host-sim ", "limpid.")
 }

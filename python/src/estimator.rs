@@ -115,7 +115,7 @@ fn count(object: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
     }
     let refused = || {
         PyTypeError::new_err(format!(
-            "{name}: must be an integer; round a float with round() or numpy.rint"
+            "{name}: must be an integer; round a float with round(), and pass several rows to process()"
         ))
     };
     let index = object

@@ -17,7 +17,7 @@ use terminal::failure::Failure;
 use crate::background::interruptible;
 use crate::columns::{Columns, Unchecked};
 use crate::device::{DeviceFile, Named, PresetsFile, device, device_of, parameters as of_presets};
-use crate::error::{of_arrays, value_error};
+use crate::error::{of_logs, value_error};
 use crate::integer::{CountsPerRev, Integer};
 
 /// The device for these recordings, and what is said about their counts per revolution.
@@ -84,7 +84,11 @@ fn tunable(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
 }
 
 fn in_words_of_python(notes: &[String]) -> Vec<String> {
-    notes.iter().map(|note| of_arrays(note)).collect()
+    notes.iter().map(|note| of_logs(note)).collect()
+}
+
+fn failure_of_logs(failure: Failure) -> Failure {
+    Failure::Input(of_logs(&failure.to_string()))
 }
 
 /// The ranking as JSON, the lines of Rust, and the notes.
@@ -110,7 +114,8 @@ pub(crate) fn recommend(
     let columns = columns?;
     interruptible(py, |stop| {
         let kinds = Kind::all().iter().collect();
-        let (logs, _, said) = read(columns, &device, &parameters, kinds, false)?;
+        let read = read(columns, &device, &parameters, kinds, false);
+        let (logs, _, said) = read.map_err(failure_of_logs)?;
         notes.extend(said);
         let settings = Settings {
             device: &device,
@@ -119,7 +124,8 @@ pub(crate) fn recommend(
             budget: instructions,
             cost: report::measured::cost,
         };
-        let recommended = recommend_for(&logs, &settings, &|| stop.look())?;
+        let recommended = recommend_for(&logs, &settings, &|| stop.look());
+        let recommended = recommended.map_err(failure_of_logs)?;
         notes.extend(recommended.notes.iter().cloned());
         let json = serde_json::to_string(&recommended.ranked).map_err(|error| error.to_string())?;
         let rust = lines(&recommended, instructions);
@@ -149,13 +155,16 @@ pub(crate) fn tune_logs(
     let columns = columns?;
     interruptible(py, |stop| {
         let are_named = !estimators.is_empty();
-        let (logs, kinds, said) = read(columns, &device, &before, kinds, are_named)?;
+        let read = read(columns, &device, &before, kinds, are_named);
+        let (logs, kinds, said) = read.map_err(failure_of_logs)?;
         notes.extend(said);
         let logs = logs.into_iter().map(|(name, recording)| {
             let sum = String::new();
             (LogFile { name, sum }, recording)
         });
-        let plan = LogPlan::new(logs.collect(), device, &kinds, &before)?.with_notes(notes);
+        let plan =
+            LogPlan::new(logs.collect(), device, &kinds, &before).map_err(failure_of_logs)?;
+        let plan = plan.with_notes(notes);
         let searches = plan.jobs()?;
         let tuned = plan.rows_with_look(&searches, &|| (), &|| stop.look())?;
         let rows = searches.into_iter().zip(&tuned);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use estimator_core::{Count, WrapError};
 use pyo3::prelude::*;
+use pyo3::types::PyMapping;
 use recordings::recording::{after, boundary};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -12,10 +13,25 @@ use crate::error::value_error;
 use crate::integer::Integer;
 
 /// The argument `modulus`: of the large encoder alone, or by the names of the columns.
-#[derive(FromPyObject)]
 pub(crate) enum Modulus {
     Each(BTreeMap<String, Integer>),
     One(Integer),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Modulus {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let Ok(mapping) = object.cast::<PyMapping>() else {
+            return Ok(Self::One(object.extract()?));
+        };
+        let mut each = BTreeMap::new();
+        for item in mapping.items()? {
+            let (name, modulus): (Bound<'_, PyAny>, Integer) = item.extract()?;
+            each.insert(name.str()?.to_string(), modulus);
+        }
+        Ok(Self::Each(each))
+    }
 }
 
 /// The moduli of both encoders.

@@ -10,7 +10,9 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::columns::Columns;
-use crate::device::{Built, DeviceFile, Named, PresetsFile, device_of, parameters as of_presets};
+use crate::device::{
+    Built, DeviceFile, Named, PresetsFile, device_of, named, parameters as of_presets,
+};
 use crate::error::{of_arrays, value_error};
 use crate::integer::CountsPerRev;
 use crate::stream::{Arrays, Stream, arrays, lack};
@@ -32,12 +34,13 @@ pub(crate) fn replay<'py>(
     recording: Columns<'py>,
     estimator: &str,
     counts_per_rev: Option<CountsPerRev>,
-    parameters: Named,
+    parameters: Option<&Bound<'py, PyAny>>,
     presets: Option<PresetsFile>,
     device: Option<DeviceFile>,
     resample: Option<f64>,
 ) -> PyResult<Replayed<'py>> {
     let name = recording.name.clone();
+    let parameters = parameters.map_or(Ok(Named::new()), named)?;
     let stated = [(name.as_str(), recording.counts_per_rev)];
     let (device, differing) =
         device_of(device.as_ref(), counts_per_rev, &stated).map_err(value_error)?;

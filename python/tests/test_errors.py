@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,6 +32,12 @@ def replay(**arguments):
         ({"counts": np.ma.array(COUNTS, mask=COUNTS == 7)}, ["counts: has masked rows; fill them", "pass t"]),
         ({"current": np.ma.masked_invalid(np.r_[CURRENT[:99], np.nan])}, ["current: has masked rows"]),
         ({"counts": ["a", "b"]}, ["counts: has the type"]),
+        ({"counts": "motor.csv"}, ["counts: has the type str; pass an array or a list; limpid.read_log reads a file"]),
+        ({"counts": Path("motor.csv")}, ["counts: has the type PosixPath; pass an array", "limpid.read_log"]),
+        ({"counts": (k for k in range(100))}, ["counts: has the type generator; pass an array or a list"]),
+        ({"counts": {1, 2}}, ["counts: has the type set; pass an array or a list"]),
+        ({"counts": [1, None, 3]}, ["counts: has the type object, and row 1 is None; pass integers: fill such rows"]),
+        ({"counts": [1.0, 2.0, np.nan]}, ["float64, and row 2 is nan; pass integers: fill such rows", "pass t"]),
         ({"current": CURRENT[:50]}, ["current: has 50 rows where counts has 100; pass columns of equal length"]),
         ({"current": np.r_[CURRENT[:99], np.nan]}, ["current: row 99 is nan; remove the row, or fill it", "(A)"]),
         ({"current": np.r_[np.inf, CURRENT[:99]]}, ["current: row 0 is inf"]),
@@ -42,10 +49,17 @@ def replay(**arguments):
         ({"t": COUNTS / 1000}, ["rate and t: pass one of them"]),
         ({"rate": 0}, ["rate=0: must be positive and finite (Hz)"]),
         ({"rate": float("nan")}, ["rate=nan: must be positive and finite (Hz)"]),
+        ({"rate": 10**400}, ["0: must be positive and finite (Hz)"]),
         ({"rate": None, "t": COUNTS[::-1] / 1000}, ["row 1: column t: 0.098 s is before the 0.099 s above it"]),
-        ({"rate": None, "t": COUNTS.astype(float)}, ["1 Hz", "not in ms, us or ns"]),
+        ({"rate": None, "t": COUNTS.astype(float)}, ["1 Hz", "that it is not in ms, us or ns, and multiply it"]),
+        ({"rate": None, "t": 0.001}, ["t: has the type float; pass an array or a list"]),
+        (
+            {"rate": None, "t": COUNTS.astype("timedelta64[ms]")},
+            ["t: has the type timedelta64[ms]; pass real numbers (s), for example (t - t[0]) / numpy.timedelta64(1, 's')"],
+        ),
         ({"rate": None, "t": np.r_[np.nan, COUNTS[:99]]}, ["t: row 0 is nan", "(s)"]),
         ({"estimator": "imn"}, ["'imn'; did you mean imm?"]),
+        ({"estimator": "IMM"}, ["'IMM'; did you mean imm?"]),
         ({"estimator": "imm-motor"}, ["imm-motor needs the current of the large motor: pass current"]),
         ({"estimator": "observer", "current": CURRENT}, ["the counts of the small encoder: pass coupled"]),
         ({"estimator": "m-over-t"}, ["pass edge_age and edge_boundary"]),
@@ -102,6 +116,14 @@ def test_attribute_that_is_replaced_is_checked_again(attribute, value, said):
         limpid.replay(recording)
 
 
+def test_rate_of_rows_with_times_is_not_replaced():
+    recording = limpid.Recording(COUNTS, t=COUNTS / 1000)
+    limpid.replay(recording)
+    recording.rate = 500
+    with pytest.raises(ValueError, match=r"rate=500.0: the rows have times, which are 1000.0 Hz; leave the rate"):
+        limpid.replay(recording)
+
+
 def test_attributes_are_replaced_by_other_types():
     recording = limpid.Recording(COUNTS, 1000)
     recording.counts = 2 * COUNTS
@@ -120,6 +142,7 @@ def test_recording_has_its_own_columns():
     [
         ({"count": 1.5}, TypeError, "count: must be an integer; round a float"),
         ({"count": "x"}, TypeError, "count: must be an integer"),
+        ({"count": COUNTS}, TypeError, "count: must be an integer; round a float with round(), and pass several rows to process()"),
         ({"count": 1, "dt": 0.001}, ValueError, "make it with varying=True"),
         ({"count": 1, "current": float("nan")}, ValueError, "current=NaN: must be finite (A)"),
         ({"count": 1, "edge_age": 0.0}, ValueError, "edge_age and edge_boundary: give both or neither"),
@@ -140,6 +163,7 @@ def test_estimator_refuses():
         ({"modulus": 1}, "modulus=1: must be from 2 to 2147483648, for example 4096"),
         ({"modulus": {"coupled": 1}}, "modulus=1: must be from 2 to 2147483648, for example 4096"),
         ({"modulus": {"small": 4096}}, "modulus: has the key 'small'; pass counts or coupled"),
+        ({"modulus": {1: 4096}}, "modulus: has the key '1'; pass counts or coupled"),
         ({"estimator": "foaw-end-fit", "varying": True}, "foaw-end-fit needs a constant period"),
     ):
         with pytest.raises(ValueError) as error:
@@ -254,6 +278,51 @@ def test_wrong_types_are_type_errors_that_name_the_argument():
             call()
     with pytest.raises(TypeError, match="rate: has the type list"):
         replay(rate=[1000, 2000])
+
+
+def test_every_type_error_names_the_argument():
+    log = limpid.Recording(COUNTS, 1000)
+    for call, said in (
+        (lambda: replay(parameters=5), "parameters: give a dict of names with numbers as values"),
+        (lambda: replay(parameters={1: 5}), "parameters: give a dict of names with numbers as values"),
+        (lambda: limpid.tune(log, estimators=None), "estimators: has the type NoneType; pass a name or names"),
+        (lambda: limpid.tune(log, estimators=limpid.estimators()), "estimators: has the type EstimatorInfo; pass a name"),
+        (lambda: limpid.tune(rate=1000, scenarios=5), "scenarios: has the type int; pass a name or names"),
+        (lambda: limpid.read_log("log.csv", columns=None), "columns: has the type NoneType; pass a dict"),
+        (lambda: limpid.read_log("log.csv", columns=[("t", "time")]), "columns: has the type tuple; pass a dict"),
+        (lambda: limpid.Recording(COUNTS, 1000, name=5), "name: has the type int; pass a str"),
+    ):
+        with pytest.raises(TypeError) as error:
+            call()
+        assert str(error.value).startswith(said)
+
+
+def test_logs_are_recordings_and_each_is_given_once():
+    for logs in (None, 5, "motor.csv", COUNTS, [], [5]):
+        for call in (limpid.recommend, limpid.tune) if logs is not None else (limpid.recommend,):
+            with pytest.raises(ValueError, match=r"logs: pass a limpid.Recording or several"):
+                call(logs)
+    log = limpid.Recording(COUNTS, 1000, name="hand")
+    for call in (limpid.recommend, limpid.tune):
+        with pytest.raises(ValueError, match="logs: hand is given twice; pass each recording once"):
+            call([log, log])
+
+
+def test_lines_are_named():
+    for lines in (5, "AB", ["A"]):
+        with pytest.raises(ValueError, match="give the names of 2 columns"):
+            limpid.decode("lines.csv", lines=lines)
+
+
+def test_rows_of_a_recording_are_replaced_by_the_reader_of_logs():
+    """The remedy is an argument that exists: recommend and tune have no resample."""
+    rng = np.random.default_rng(5)
+    counts = (300 * np.sin(np.arange(6000) / 300)).astype(int)
+    uneven = limpid.Recording(counts, t=np.cumsum(rng.uniform(0.5e-3, 1.5e-3, 6000)))
+    with pytest.raises(ValueError, match=r"needs a constant period: add resample=\d+ of limpid\.read_log, or name"):
+        limpid.tune(uneven, estimators="foaw-end-fit")
+    with pytest.raises(ValueError, match=r"; give resample= of limpid\.read_log, or run each rate on its own"):
+        limpid.recommend([limpid.Recording(counts, rate) for rate in (1000, 500)])
 
 
 def test_version_is_that_of_the_package():

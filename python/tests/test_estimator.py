@@ -6,6 +6,7 @@ import signal
 import threading
 import time
 import types
+import weakref
 
 import numpy as np
 import pytest
@@ -281,9 +282,20 @@ def test_parameters_are_a_mapping():
     parameters = types.MappingProxyType({"cutoff_hz": 40.0})
     assert limpid.Estimator("low-pass", parameters=parameters).parameters == dict(parameters)
     assert limpid.replay([1, 2, 3], 1000, estimator="low-pass", parameters=parameters).parameters == dict(parameters)
+    moduli = types.MappingProxyType({"counts": 4096})
+    assert limpid.Estimator("low-pass", modulus=moduli).update(7) == 0
     for wrong in (5, {"cutoff_hz": "x"}, ["cutoff_hz"]):
         with pytest.raises(TypeError, match="parameters: give a dict of names with numbers as values"):
             limpid.Estimator("low-pass", parameters=wrong)
+
+
+def test_attribute_without_effect_is_refused():
+    estimator = limpid.Estimator("pll")
+    for name in ("modulus", "varying", "bandwidth_hz"):
+        with pytest.raises(AttributeError, match=name):
+            setattr(estimator, name, 4096)
+    # Objects may still refer to it weakly.
+    assert weakref.ref(estimator)() is estimator
 
 
 def test_count_at_the_modulus_or_above_is_refused():

@@ -138,6 +138,7 @@ def test_hall_lines_are_decoded(tmp_path):
         ({"rate": 5}, "rate=5: must be from 10 to 100000 Hz"),
         ({"counts_per_rev": 1}, "counts_per_rev"),
         ({"lines": ("u", "x")}, "hall.csv: line 1: no column 'x'"),
+        ({}, "with lines=['A', 'B'], or three Hall lines with hall=['U', 'V', 'W']"),
     ):
         with pytest.raises(ValueError) as error:
             limpid.decode(path, **arguments)
