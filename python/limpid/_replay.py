@@ -37,13 +37,12 @@ class Replay:
     parameters: dict[str, float]
     #: What was converted, and whether the parameters were tuned for another encoder or rate.
     notes: list[str]
-    _recording: Recording = field(repr=False)
     _times: NDArray[np.float64] | None = field(repr=False)
 
     @property
     def t(self) -> NDArray[np.float64]:
         """Time of each row, s."""
-        return self._recording.t if self._times is None else self._times
+        return np.arange(len(self.velocity)) / self.rate if self._times is None else self._times
 
 
 def replay(
@@ -129,8 +128,7 @@ def replay(
         damping_ratio=damping_ratio,
         parameters=values,
         notes=notes,
-        _recording=recording,
-        _times=None if times is None else np.asarray(times),
+        _times=recording._t if times is None else np.asarray(times),
     )
 
 

@@ -193,6 +193,14 @@ def test_rows_at_uneven_times_have_their_true_steps():
     assert abs(even.velocity[-500:].mean() - 20) < 0.1
 
 
+def test_times_of_a_replay_stay_when_its_recording_changes():
+    recording = limpid.Recording(np.arange(3000), 1000)
+    replayed = limpid.replay(recording)
+    recording.counts = np.arange(10)
+    recording.rate = 50
+    np.testing.assert_array_equal(replayed.t, np.arange(3000) / 1000)
+
+
 def test_presets_are_scaled_to_the_encoder_as_stated(signals):
     fine = limpid.parameters("pll", 1000, counts_per_rev=4096)
     coarse = limpid.parameters("pll", 1000, counts_per_rev=256)
