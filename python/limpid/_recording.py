@@ -68,7 +68,7 @@ class Recording:
         self.current_small: NDArray[np.float64] | None = current_small
         self._t: NDArray[np.float64] | None = t
         self.name = name
-        self.notes = list(notes)
+        self.notes = _arrays.as_names(notes, "notes", "lines of text")
         self.counts_per_rev = None if counts_per_rev is None else _limpid.checked_counts_per_rev(counts_per_rev)
         self._check_columns()
         if (rate is None) == (self._t is None):

@@ -1,11 +1,15 @@
 //! Long work without the interpreter's lock, which Ctrl-C interrupts.
 
+use std::mem;
 use std::panic::resume_unwind;
+use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use terminal::failure::Failure;
 
 use crate::error::value_error;
@@ -29,6 +33,25 @@ impl Stop {
     }
 }
 
+/// The threads of parallel work and the process that they are of. A process that Python's multiprocessing has
+/// forked has none of the threads of its parent: work for those would not end.
+static THREADS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// The threads of this process.
+fn threads() -> Result<Arc<ThreadPool>, Failure> {
+    let mut kept = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    match &*kept {
+        Some((owner, threads)) if *owner == process::id() => Ok(Arc::clone(threads)),
+        _ => {
+            let threads = ThreadPoolBuilder::new().build();
+            let threads = Arc::new(threads.map_err(|error| format!("threads: {error}"))?);
+            // Threads of the parent cannot be ended here.
+            mem::forget(kept.replace((process::id(), Arc::clone(&threads))));
+            Ok(threads)
+        }
+    }
+}
+
 /// Waits until `is_finished`. The error is that of a handler of a signal, as after Ctrl-C.
 fn wait(py: Python<'_>, is_finished: impl Fn() -> bool) -> PyResult<()> {
     let mut pause = Duration::from_micros(100);
@@ -46,8 +69,9 @@ pub(crate) fn interruptible<T: Send>(
     work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
 ) -> PyResult<T> {
     let stop = Stop::default();
+    let threads = threads().map_err(value_error)?;
     let (waited, ended) = thread::scope(|scope| {
-        let worker = scope.spawn(|| work(&stop));
+        let worker = scope.spawn(|| threads.install(|| work(&stop)));
         let waited = wait(py, || worker.is_finished());
         stop.0.store(waited.is_err(), Ordering::Relaxed);
         while !worker.is_finished() {

@@ -291,6 +291,7 @@ def test_every_type_error_names_the_argument():
         (lambda: limpid.read_log("log.csv", columns=None), "columns: has the type NoneType; pass a dict"),
         (lambda: limpid.read_log("log.csv", columns=[("t", "time")]), "columns: has the type tuple; pass a dict"),
         (lambda: limpid.Recording(COUNTS, 1000, name=5), "name: has the type int; pass a str"),
+        (lambda: limpid.Recording(COUNTS, 1000, notes=5), "notes: has the type int; pass lines of text"),
     ):
         with pytest.raises(TypeError) as error:
             call()

@@ -7,6 +7,7 @@ import gzip
 import json
 import signal
 import subprocess
+import sys
 import time
 
 import numpy as np
@@ -330,8 +331,24 @@ def test_coarsening_is_refused_with_the_reason(data):
         limpid.coarsen(fine, 1024, rate=5)
     with pytest.raises(ValueError, match="give fine_counts_per_rev=, or list the file"):
         limpid.coarsen(data / "back-and-forth.csv", 16)
-    for none in (0, -3):
-        with pytest.raises(ValueError, match=f"fine_counts_per_rev={none}: must be from 1 to 4294967295"):
+    for none in (0, -3, 15, 4_000_001):
+        with pytest.raises(ValueError, match=f"fine_counts_per_rev={none}: must be from 16 to 4000000"):
             limpid.coarsen(fine, 1024, fine_counts_per_rev=none)
     with pytest.raises(FileNotFoundError):
         limpid.coarsen(data / "nothing.csv", 16)
+
+
+def test_forked_process_has_its_own_threads(tmp_path):
+    """A pool of multiprocessing forks after the parent has tuned: the threads of the parent are not there."""
+    program = """
+import multiprocessing, limpid
+log = limpid.simulate("track", rate=1000, seconds=5)
+def experiments(_):
+    return limpid.tune(log, estimators=["pll", "low-pass"]).presets, limpid.recommend(log).text
+once = experiments(0)
+with multiprocessing.get_context("fork").Pool(1) as pool:
+    # Without threads of its own the process would wait for ever.
+    assert pool.map_async(experiments, [0]).get(timeout=120) == [once]
+"""
+    # Not in the folder of the sources, which has a package of this name.
+    subprocess.run([sys.executable, "-W", "ignore", "-c", program], check=True, cwd=tmp_path)
