@@ -79,6 +79,17 @@ fn modulus(value: &str) -> Option<(String, &str)> {
     Some((format!("{{'{column}': {number}}}"), after))
 }
 
+/// The command that tunes at a rate as a call.
+fn tuned_at_a_rate(text: &str) -> String {
+    let Some((before, rate)) = text.split_once("host-sim tune rate=") else {
+        return text.to_owned();
+    };
+    let is_digit = |c: char| c.is_ascii_digit() || c == '.';
+    let end = rate.find(|c| !is_digit(c)).unwrap_or(rate.len());
+    let (rate, after) = rate.split_at(end);
+    format!("{before}limpid.tune(rate={rate}){after}")
+}
+
 /// Checks that a file can be opened; otherwise the `OSError` of Python. A pipe is not opened twice.
 pub(crate) fn check_file(py: Python<'_>, path: &Path) -> PyResult<()> {
     let opened = || -> io::Result<()> {
@@ -132,7 +143,9 @@ pub(crate) fn in_python(message: &str) -> String {
         rest = value.filter(is_value).unwrap_or(after);
     }
     text.push_str(rest);
-    text.replace("lines=A B", "lines=['A', 'B']")
+    tuned_at_a_rate(&text)
+        .replace("host-sim tune RECORDING", "limpid.tune(log)")
+        .replace("lines=A B", "lines=['A', 'B']")
         .replace("hall=U V W", "hall=['U', 'V', 'W']")
         .replace("host-sim estimators", "limpid.estimators()")
         .replace("host-sim scenarios", "limpid.scenarios()")

@@ -201,6 +201,13 @@ def test_times_of_a_replay_stay_when_its_recording_changes():
     np.testing.assert_array_equal(replayed.t, np.arange(3000) / 1000)
 
 
+def test_note_on_parameters_from_far_away_names_calls():
+    said = "tune them with limpid.tune(log) or limpid.tune(rate=1000.5), with device=FILE.toml, and give its file as presets="
+    (note,) = limpid.replay(np.arange(100), 1000.5, estimator="pll", counts_per_rev=16).notes
+    assert said in note
+    assert limpid.Estimator("pll", 1000.5, counts_per_rev=16).notes == [note]
+
+
 def test_presets_are_scaled_to_the_encoder_as_stated(signals):
     fine = limpid.parameters("pll", 1000, counts_per_rev=4096)
     coarse = limpid.parameters("pll", 1000, counts_per_rev=256)
