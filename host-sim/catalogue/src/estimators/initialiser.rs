@@ -208,6 +208,16 @@ impl Kind {
     }
 }
 
+/// The value of a word. A word that would be no number, or one smaller than those of parameters, is an integer.
+fn value(word: u32) -> String {
+    const SMALLEST: f32 = 1e-30;
+    let number = f32::from_bits(word);
+    match number == 0.0 || number.abs() >= SMALLEST {
+        true => format!("{number:?}"),
+        false => word.cast_signed().to_string(),
+    }
+}
+
 /// The initialisers of the words, one a line.
 fn words(bytes: &[u8], alignment: usize) -> String {
     let mut lines = String::new();
@@ -225,10 +235,7 @@ fn words(bytes: &[u8], alignment: usize) -> String {
         padded.resize(bytes.len().next_multiple_of(4).max(4), 0);
         for word in padded.as_chunks().0 {
             let word = u32::from_le_bytes(*word);
-            line(format_args!(
-                "UINT32_C({word:#010x}) /* {:?} */",
-                f32::from_bits(word)
-            ));
+            line(format_args!("UINT32_C({word:#010x}) /* {} */", value(word)));
         }
     }
     lines
@@ -261,8 +268,12 @@ mod tests {
             lines(&[0, 0, 0x80, 0x3f, 1], 4),
             [
                 "    UINT32_C(0x3f800000) /* 1.0 */,",
-                "    UINT32_C(0x00000001) /* 1e-45 */,"
+                "    UINT32_C(0x00000001) /* 1 */,"
             ]
+        );
+        assert_eq!(
+            lines(&[0xfe, 0xff, 0xff, 0xff], 4),
+            ["    UINT32_C(0xfffffffe) /* -2 */,"]
         );
         // An estimator without parameters has one word, because an array of C has an element.
         assert_eq!(lines(&[], 1), ["    UINT32_C(0x00000000) /* 0.0 */,"]);
