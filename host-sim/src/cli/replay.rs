@@ -1,28 +1,29 @@
 //! `host-sim replay`.
 
+mod passes;
+mod referenced;
+
 use std::collections::BTreeMap;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use indicatif::ProgressBar;
 
-use experiments::reference::{Reference, interruptions};
 use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::{Parts, Survey};
-use scoring::score::{SKIP_S, skipped};
-use simulation::device::Device;
+use recordings::recording::Parts;
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
+use terminal::output::{is_stdout, note, print_bytes, write_whole};
 use terminal::wording::wrapped;
 
 use super::arguments::{ParameterOptions, kinds};
 use super::page::{one_to_stdout, progress};
 use experiments::uneven::{Chosen, Recorded};
-use recordings::log::{Log, called, short_name};
+use recordings::log::{Log, short_name};
+
+use passes::{Passes, write_rows};
+use referenced::{Referenced, reference, unscored};
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {
@@ -60,9 +61,6 @@ pub(super) struct Replay {
     #[arg(long, value_name = "USE")]
     pub(super) reference: Option<ReferenceUse>,
 }
-
-/// Largest number of rows of which a reference is computed unasked.
-const UNASKED: usize = 2_000_000;
 
 /// What a reference is computed for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -219,159 +217,6 @@ pub(super) fn refuse_left_out(
             "{name}: line 1: no column {column}, which {estimator} needs; see host-sim estimators"
         )))
     })
-}
-
-/// What was computed of a whole recording.
-#[derive(Default)]
-struct Referenced {
-    /// The reference, if it is needed.
-    reference: Option<Reference>,
-    /// Why a recording without a truth has no scores.
-    without: Option<String>,
-    /// The rows that are no motion.
-    interruptions: Option<String>,
-}
-
-/// The reference, if it is needed.
-fn reference(
-    options: &Replay,
-    log: &Log,
-    survey: &Survey,
-    device: &Device,
-) -> Result<Referenced, Failure> {
-    let without = |why| Referenced {
-        without: Some(why),
-        ..Referenced::default()
-    };
-    let has_truth = survey.columns.true_omega.is_some();
-    let called = called(&options.trace);
-    match options.reference {
-        Some(ReferenceUse::Off) if !has_truth && options.json.is_some() => {
-            return Err(Failure::Input(format!(
-                "{called}: line 1: no column true_omega, which --json needs for the scores with \
-                 --reference off; add it or leave out --reference off"
-            )));
-        }
-        Some(ReferenceUse::Off) => return Ok(Referenced::default()),
-        None | Some(ReferenceUse::Scores) if has_truth => return Ok(Referenced::default()),
-        None if survey.rows > UNASKED && options.json.is_none() => {
-            let why = format!(
-                "no column true_omega, and {} rows; --reference scores computes a reference of them",
-                survey.rows
-            );
-            return Ok(without(why));
-        }
-        _ => {}
-    }
-    let unscored = unscored(survey);
-    let in_columns = options.reference == Some(ReferenceUse::Columns);
-    let recording = options.recording.read(log, device)?;
-    match Reference::of(&recording, device.stages.large.counts_per_rev) {
-        Ok(_) if unscored.is_some() && options.json.is_none() && !in_columns => Ok(Referenced {
-            without: unscored,
-            ..Referenced::default()
-        }),
-        Ok(reference) => Ok(Referenced {
-            interruptions: interruptions(&recording, (!has_truth).then_some(&reference)),
-            reference: Some(reference),
-            without: None,
-        }),
-        // Velocities alone need no reference.
-        Err(why) if options.json.is_none() && !in_columns => {
-            Ok(without(format!("{why}; --reference off computes none")))
-        }
-        Err(why) => Err(Failure::Input(format!(
-            "{called}: {why}; --reference off without --json writes velocities alone"
-        ))),
-    }
-}
-
-/// Why a recording has no scores that ends before they begin.
-fn unscored(survey: &Survey) -> Option<String> {
-    let (rows, rate_hz) = (survey.rows, survey.columns.rate_hz);
-    let is_short = rows <= skipped(rate_hz);
-    is_short.then(|| format!("{rows} rows at {rate_hz} Hz; scores begin after {SKIP_S} s"))
-}
-
-/// The second pass over a log.
-struct Passes<'a> {
-    parts: Parts<'a>,
-    summary: BoardSummary,
-    bar: ProgressBar,
-    /// Rows of a section.
-    section: usize,
-    reference: Option<&'a Reference>,
-    /// Whether scores are against the reference.
-    scores: bool,
-    /// Whether the reference is written.
-    columns: bool,
-    /// Whether standard deviations are written.
-    deviations: bool,
-    /// The latest rows.
-    passed: std::ops::Range<usize>,
-}
-
-impl Passes<'_> {
-    /// Runs the estimators over the next section; `false` after the last one.
-    fn step(&mut self, run: &mut Run) -> Result<bool, Failure> {
-        let mut rows = self.parts.next(self.section)?;
-        if rows.t.is_empty() {
-            return Ok(false);
-        }
-        self.passed = self.passed.end..self.passed.end + rows.t.len();
-        if let (Some(reference), true) = (self.reference, self.scores) {
-            reference.to_trace(&mut rows.trace, self.passed.clone());
-        }
-        let bar = &self.bar;
-        let board = std::mem::take(&mut rows.board);
-        run.add(rows, &|| bar.inc(1))?;
-        match self.scores {
-            true => self.summary.learn(&board),
-            false => self.summary.add(&run.section.trace, &board),
-        }
-        Ok(true)
-    }
-
-    /// The reference of the latest rows and its standard deviation, if they are written.
-    fn reference_columns(&self) -> Vec<&[f64]> {
-        let reference = self.reference.filter(|_| self.columns);
-        let columns = reference.map(|reference| [&reference.omega, &reference.sd]);
-        let columns = columns.into_iter().flatten();
-        columns.map(|column| &column[self.passed.clone()]).collect()
-    }
-}
-
-/// Runs the estimators over all sections and writes the velocities of each.
-fn write_rows(out: &Path, passes: &mut Passes, run: &mut Run) -> Result<(), Failure> {
-    let mut refused = None;
-    let written = write_with(out, |to| {
-        let mut is_first = true;
-        loop {
-            match passes.step(run) {
-                Ok(true) => {
-                    let (names, columns): (Vec<_>, Vec<_>) =
-                        run.columns(passes.deviations).into_iter().unzip();
-                    let reference = passes.reference_columns();
-                    if std::mem::take(&mut is_first) {
-                        let of_reference = match reference.is_empty() {
-                            true => &[][..],
-                            false => &replay::REFERENCE_COLUMNS,
-                        };
-                        let names = names.iter().map(String::as_str);
-                        replay::csv_header(to, names.chain(of_reference.iter().copied()))?;
-                    }
-                    replay::csv(to, run.t(), &columns, &reference)?;
-                }
-                Ok(false) => return Ok(()),
-                Err(failure) => {
-                    let error = io::Error::other(failure.to_string());
-                    refused = Some(failure);
-                    return Err(error);
-                }
-            }
-        }
-    });
-    refused.map_or(written, Err)
 }
 
 /// What is said about a recording and the estimators that ran on it.
