@@ -26,7 +26,7 @@ pub(super) const TITLE: f64 = 14.0;
 pub(super) const LABEL: f64 = 11.5;
 
 /// Where a text has its anchor.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
     Left,
     Centre,

@@ -5,6 +5,7 @@ use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height
 use super::page::Printout;
 use super::palette::{BAND, INK, MUTED, TRUTH};
 use super::plot::{Axis, Plot};
+use super::text::number;
 use experiments::identify::{Identification, ModelComparison, Quantity, SPAN_S};
 use plotters::style::RGBColor;
 
@@ -116,8 +117,8 @@ fn motion(comparison: &ModelComparison, count_rad_s: f64) -> Result<Svg, String>
     })
 }
 
-/// Each constant that the device file has, its value and the half-width of its interval, both relative to the
-/// value of the file.
+/// Each constant that the device has so far, its value and the half-width of its interval, both relative to the
+/// value so far: that of the device file, or its default.
 fn relative(quantities: &[Quantity]) -> Vec<(&Quantity, f64, f64)> {
     let there = quantities.iter().filter(|quantity| quantity.file != 0.0);
     there
@@ -125,14 +126,24 @@ fn relative(quantities: &[Quantity]) -> Vec<(&Quantity, f64, f64)> {
         .collect()
 }
 
-/// Each constant relative to its value in the device file, with its 95 % interval.
+/// The text in the place of the mark of a ratio beyond the axis, and the end of the axis at which it stands.
+fn beyond(ratio: f64, axis: Axis) -> Option<(String, Anchor)> {
+    let times = number(ratio);
+    match ratio {
+        _ if ratio < axis.low => Some((format!("\u{2190} {times} times"), Anchor::Left)),
+        _ if ratio > axis.high => Some((format!("{times} times \u{2192}"), Anchor::Right)),
+        _ => None,
+    }
+}
+
+/// Each constant relative to its value so far, with its 95 % interval.
 fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
     let parts = relative(quantities);
     let accepted = || parts.iter().filter(|(q, ..)| q.rejected.is_none());
     let reach = accepted().map(|(_, part, half)| (part - 1.0).abs() + half);
     let span = (1.15 * reach.fold(0.05, f64::max)).min(1.0);
     let height = TOP + ROW * parts.len() as f64;
-    let title = "Identified value relative to the device file, with 95 % intervals";
+    let title = "Identified value relative to that of the device so far, with 95 % intervals";
     figure(height + 50.0, title, |canvas| {
         canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
         let plot = Plot {
@@ -174,6 +185,12 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
                 )?;
                 continue;
             }
+            if let Some((text, anchor)) = beyond(*part, plot.x) {
+                let ends = [plot.left + 8.0, plot.right - 8.0];
+                let x = ends[usize::from(anchor == Anchor::Right)];
+                canvas.text(&text, (x, y), anchor, LABEL, MODEL)?;
+                continue;
+            }
             let x = |value: f64| plot.at((value.clamp(plot.x.low, plot.x.high), 0.0)).0;
             let [low, at, high] = [part - half, *part, part + half].map(x);
             canvas.line(&[(low, y), (high, y)], MODEL, 2.0)?;
@@ -183,7 +200,10 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
             canvas.line(&[(at, y - 8.0), (at, y + 8.0)], INK, 2.5)?;
         }
         plot.edges(canvas)?;
-        plot.x_title(canvas, "identified value / value of the device file")
+        plot.x_title(
+            canvas,
+            "identified value / value in the device file, or its default",
+        )
     })
 }
 
@@ -191,6 +211,21 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
 mod tests {
     use super::*;
     use experiments::identify::{Estimate, Unit};
+
+    #[test]
+    fn ratio_beyond_the_axis_is_a_text_at_its_end() {
+        let axis = Axis::linear([0.5, 1.5]);
+        let text = |ratio| beyond(ratio, axis).map(|(text, _)| text);
+        assert_eq!(text(0.5), None);
+        assert_eq!(text(1.5), None);
+        let (right, anchor) = beyond(16.3, axis).unwrap();
+        assert!(right.starts_with("16.3 times") && anchor == Anchor::Right);
+        let (left, anchor) = beyond(-2.0, axis).unwrap();
+        assert!(
+            left.ends_with("\u{2212}2.00 times") && anchor == Anchor::Left,
+            "{left}"
+        );
+    }
 
     #[test]
     fn constants_are_relative_to_the_values_of_the_file() {
