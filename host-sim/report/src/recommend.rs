@@ -47,6 +47,7 @@ pub fn recommend(
     for outcome in &recommendation.outcomes {
         let signals = Signals {
             truth: outcome.omega(),
+            known: (outcome.reference.as_ref()).and_then(|reference| reference.known.as_deref()),
             called: if outcome.reference.is_some() {
                 "reference"
             } else {

@@ -32,11 +32,18 @@ fn margin([low, high]: [f64; 2], error: f64) -> f64 {
     error.min(ROOM * size).max(least).max(0.05)
 }
 
-/// First tick of the part of [`SHOWN_S`] in which the estimates have the largest errors, each relative
-/// to its own error over the recording.
-pub(super) fn hardest(truth: &[f64], estimates: &[&Estimate], rate_hz: f64) -> usize {
+/// First tick of the part of [`SHOWN_S`] in which the estimates have the largest errors where the truth is known,
+/// each relative to its own error over the recording.
+pub(super) fn hardest(signals: &Signals, estimates: &[&Estimate]) -> usize {
+    let Signals {
+        truth,
+        known,
+        rate_hz,
+        ..
+    } = *signals;
     let [length, step] = [SHOWN_S, STEP_S].map(|s| (s * rate_hz).round().max(1.0) as usize);
     let sum = |estimate: &Estimate, ticks: Range<usize>| -> f64 {
+        let ticks = ticks.filter(|k| known.is_none_or(|known| known[*k]));
         let errors = ticks.map(|k| (f64::from(estimate.velocity[k]) - truth[k]).powi(2));
         errors.sum()
     };
@@ -77,6 +84,7 @@ pub(super) fn chart(
     );
     let signals = Signals {
         truth,
+        known: None,
         called: "truth",
         estimates,
         rate_hz: trace.rate_hz,
@@ -88,6 +96,8 @@ pub(super) fn chart(
 pub(in super::super) struct Signals<'a> {
     /// The velocity that the errors are against, rad/s.
     pub truth: &'a [f64],
+    /// Whether it is known at each tick; `None` if at all of them.
+    pub known: Option<&'a [bool]>,
     /// What the legend calls it.
     pub called: &'static str,
     /// The estimates.
@@ -108,12 +118,13 @@ pub(in super::super) fn velocity(
         called,
         estimates,
         rate_hz,
+        ..
     } = *signals;
     let mut drawn: Vec<&Estimate> = estimates
         .iter()
         .filter(|estimate| drawn.contains(&estimate.estimator))
         .collect();
-    let first = hardest(truth, &drawn, rate_hz);
+    let first = hardest(signals, &drawn);
     let ticks = first..(first + (SHOWN_S * rate_hz) as usize + 1).min(truth.len());
     let part = &truth[ticks.clone()];
     let low = part.iter().copied().fold(f64::INFINITY, f64::min);

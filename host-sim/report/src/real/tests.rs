@@ -2,6 +2,7 @@ use experiments::real::run::Score;
 use experiments::real::sources::Role;
 use scoring::evaluation::Estimate;
 
+use super::motion::Signals;
 use super::*;
 
 fn row(recording: &str, at: (u32, f64), estimator: &'static str, pct: f64) -> Row {
@@ -83,17 +84,34 @@ fn ranking_begins_with_the_smallest_mean_and_draws_one_form_of_a_filter() {
 
 #[test]
 fn part_with_the_largest_errors_is_drawn() {
-    // 5 s at 100 Hz with an error from 3.2 to 3.6 s.
+    // 5 s at 100 Hz with an error from 3.2 to 3.6 s, and a larger one at 1 s, where the truth is not known.
     let truth = vec![1.0; 500];
-    let velocity = (0..500).map(|k| if (320..360).contains(&k) { 3.0 } else { 1.0 });
+    let velocity = (0..500).map(|k| match k {
+        100 => 1e3,
+        320..360 => 3.0,
+        _ => 1.0,
+    });
     let estimate = Estimate {
         estimator: "pll",
         velocity: velocity.collect(),
         deviation: None,
         damping_ratio: None,
     };
-    let first = motion::hardest(&truth, &[&estimate], 100.0);
+    let known: Vec<_> = (0..500).map(|k| k != 100).collect();
+    let hardest = |ticks: usize, known| {
+        let signals = Signals {
+            truth: &truth[..ticks],
+            known,
+            called: "truth",
+            estimates: &[],
+            rate_hz: 100.0,
+        };
+        motion::hardest(&signals, &[&estimate])
+    };
+    let first = hardest(500, Some(&known[..]));
     assert!((260..=320).contains(&first), "{first}");
+    let first = hardest(500, None);
+    assert!(first <= 100, "{first}");
     // A recording shorter than the part is drawn as a whole.
-    assert_eq!(motion::hardest(&truth[..40], &[&estimate], 100.0), 0);
+    assert_eq!(hardest(40, None), 0);
 }
