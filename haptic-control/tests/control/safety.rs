@@ -58,7 +58,7 @@ fn settling() -> SafetyState {
 }
 
 /// Causes of a stop in order of their priority.
-fn wrongs() -> [(Findings, Stop); 11] {
+fn wrongs() -> [(Findings, Stop); 12] {
     let of = |cause| Findings {
         monitor: Some(cause),
         ..WELL
@@ -92,6 +92,13 @@ fn wrongs() -> [(Findings, Stop); 11] {
         (of(Stop::Jump), Stop::Jump),
         (of(Stop::Stall), Stop::Stall),
         (of(Stop::RunawayDirection), Stop::RunawayDirection),
+        (
+            Findings {
+                present: Some(Stop::Overload),
+                ..WELL
+            },
+            Stop::Overload,
+        ),
         (
             Findings {
                 finite: false,

@@ -159,15 +159,18 @@ fn every_request_counts_as_keep_alive() {
     // What is not taken, too.
     for request in [Request::KeepAlive, Request::Arm, Request::Select(8)] {
         for (before, longest) in [(running(), 100), (armed(), 300)] {
-            let mut state = before;
-            let mode = state.mode();
-            for _ in 0..3 {
-                for _ in 0..longest {
-                    silent(&mut state);
+            let mode = before.mode();
+            // At the last moment, and long before it.
+            for pause in [longest, longest / 2] {
+                let mut state = before;
+                for _ in 0..6 {
+                    for _ in 0..pause {
+                        silent(&mut state);
+                    }
+                    ask(&mut state, request);
                 }
-                ask(&mut state, request);
+                assert_eq!((state.mode(), state.stop()), (mode, Stop::None));
             }
-            assert_eq!((state.mode(), state.stop()), (mode, Stop::None));
         }
     }
 }
