@@ -269,8 +269,10 @@ fn zeros_are_readings_from_10_ms_after_disabling_on() {
     let zero = currents([0.02, -0.01]);
     let command = currents([0.4, 0.2]);
     let reading = currents([0.42, 0.19]);
-    let agrees = |flowing_ticks: usize| {
-        let mut state = AmmetersState::START;
+    let mut enabled = armed(&AMMETERS);
+    AMMETERS.update(&mut enabled, &reading, Some(&command));
+    let agrees = |before: AmmetersState, flowing_ticks: usize| {
+        let mut state = before;
         for tick in 0..=WAIT {
             let reading = if tick < flowing_ticks { flowing } else { zero };
             AMMETERS.update(&mut state, &reading, None);
@@ -283,8 +285,10 @@ fn zeros_are_readings_from_10_ms_after_disabling_on() {
                 .is_none()
         })
     };
-    assert!(agrees(WAIT));
-    assert!(!agrees(WAIT + 1));
+    for before in [AmmetersState::START, enabled] {
+        assert!(agrees(before, WAIT));
+        assert!(!agrees(before, WAIT + 1));
+    }
 }
 
 /// The zero moves with the temperature of the amplifier: after 50 ms 1/e of a step is left.
