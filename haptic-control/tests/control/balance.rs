@@ -340,6 +340,31 @@ fn window_with_missed_ticks_is_not_checked() {
     assert_eq!(at, Some(402));
 }
 
+/// A step of the current that no single window finds, as [`learned`] has it.
+#[test]
+fn windows_before_and_after_missed_ticks_are_not_compared() {
+    let balance = Balance::new(&DEVICE, Hertz(10e3));
+    let amps = DEVICE.damping * EVEN / CONSTANT + FRICTION;
+    let step = 0.4 * FRICTION + 2.0 * rounding() + 3e-3;
+    let found = |misses_ticks: bool| {
+        let sample = |k: u32| {
+            let angle = EVEN * f64::from(k) / 10e3;
+            let current = amps + if k <= 3000 { 0.0 } else { step };
+            Sample::new(counts(angle, DEVICE.large.counts_per_rev))
+                .with_current(Amps::new(current as f32))
+        };
+        let mut state = balance.start(&sample(0));
+        (1..5000).any(|k| {
+            if misses_ticks && k == 3000 {
+                state.begin_after(1);
+            }
+            balance.check(&mut state, &sample(k)).is_some()
+        })
+    };
+    assert!(found(false));
+    assert!(!found(true));
+}
+
 /// A schedule of a millisecond, which calls [`Balance::pass`] in four ticks of ten.
 #[test]
 fn four_ticks_of_ten_find_what_every_tick_finds() {

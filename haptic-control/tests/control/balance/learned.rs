@@ -19,6 +19,17 @@ fn friction_of_a_direction_is_learned_from_its_windows() {
 }
 
 #[test]
+fn friction_that_grows_slower_than_its_range_widens_is_balanced() {
+    // Without widening, what is allowed at the begin would be used up after half of the time.
+    let seconds = 2.0 * (0.4 * FRICTION + 2.0 * rounding()) / (0.08 * FRICTION);
+    for sign in [1.0, -1.0] {
+        let turn = |t: f64| sign * EVEN * t;
+        let amps = |t: f64| sign * (0.05 + 0.08 * FRICTION * t);
+        assert_eq!(found_s(10e3, seconds, turn, turn, amps), None);
+    }
+}
+
+#[test]
 fn window_is_compared_with_the_one_before_the_last() {
     // The coupler brings 2 A: its 5 % alone are more than the changes here.
     let turn = |t: f64| EVEN * t;
