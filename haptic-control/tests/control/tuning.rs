@@ -137,6 +137,20 @@ fn every_parameter_is_refused_beyond_its_bounds() {
     }
 }
 
+/// A page offers the whole range of a parameter. Detents bound both of theirs together.
+#[test]
+fn both_ends_of_a_range_are_accepted() {
+    for scene in SCENES {
+        for (number, ends) in ranges(&scene) {
+            for value in ends {
+                let is_accepted = scene.tuned(number, value, &BOUNDS).is_ok();
+                let is_detents = scene.kind() == SceneKind::Detents;
+                assert!(is_accepted || is_detents, "{scene:?} {number} {value}");
+            }
+        }
+    }
+}
+
 #[test]
 fn setting_a_parameter_changes_no_other() {
     let wall = |position, stiffness, damping| {
