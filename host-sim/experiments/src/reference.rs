@@ -120,8 +120,14 @@ impl Reference {
         overlap: usize,
     ) -> Self {
         let rows = recording.t.len();
-        let period = recording.trace.period_s();
+        // In the time in which the motion is seen: in that of a row the state before the first observation would have
+        // velocities and accelerations beyond those of a slow motion by more than the digits of the arithmetic.
+        let every = thinned::every(recording);
+        let period = every as f64 * recording.trace.period_s();
         let mut motion = Motion::of(recording);
+        if let Some(thinned) = thinned::thinned(recording) {
+            motion.fastest = Motion::of(&thinned).fastest;
+        }
         let known = sections::known(&motion.rows, recording.trace.rate_hz);
         thinned::pass_over(&mut motion.rows, recording);
         let model = Model {
@@ -146,7 +152,8 @@ impl Reference {
         let all = || pieces.iter().flat_map(|(velocities, _)| velocities);
         // The smoother of a triple integrator is 1 / (1 + (w / w0)^6), w0^6 = density of the jerk times
         // the information on the position in a unit of time.
-        let corner = (model.jerk * precision / rows as f64).powf(1.0 / 6.0);
+        let precision = precision / rows as f64 * every as f64;
+        let corner = (model.jerk * precision).powf(1.0 / 6.0);
         Self {
             omega: all().map(|s| scale * s.velocity).collect(),
             sd: all().map(|s| scale * s.variance.sqrt()).collect(),

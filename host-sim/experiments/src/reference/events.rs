@@ -35,6 +35,8 @@ struct Events {
     /// Time, s, and origin of the latest event.
     last: Option<(f64, u32)>,
     period_s: f64,
+    /// Longest interval over which the motion is followed, s.
+    longest_s: f64,
 }
 
 impl Events {
@@ -47,11 +49,10 @@ impl Events {
             None => (0.0, 0.0),
         };
         self.last = Some((t, origin));
-        let since = since / self.period_s;
         self.events.push(Event {
-            since,
+            since: since / self.period_s,
             shift,
-            restarts: jumped || since > LONGEST,
+            restarts: jumped || since > self.longest_s,
             kind,
         });
     }
@@ -71,6 +72,7 @@ pub(super) fn events(
         events: Vec::with_capacity(range.len()),
         last: None,
         period_s,
+        longest_s: LONGEST * trace.period_s(),
     };
     // A range that begins with a bad count is from the first other one on: nothing is known of the motion between.
     let first = range.clone().find(|k| rows[*k] != Row::Bad);

@@ -61,7 +61,7 @@ pub(super) fn pass_over(rows: &mut [Row], recording: &Recording) {
 }
 
 /// Number n, if each n-th row is taken.
-fn every(recording: &Recording) -> usize {
+pub(super) fn every(recording: &Recording) -> usize {
     match gap(&recording.trace.counts_large) {
         0..MANY => 1,
         gap => gap / KEPT,

@@ -46,6 +46,18 @@ fn many_rows_from_an_edge_to_the_next_are_no_jerk() {
     }
 }
 
+/// The jerk of an even motion is the smallest of the search, and its edges are far apart.
+#[test]
+fn steady_motion_of_a_count_a_second_has_a_reference() {
+    let mut recording = swinging(4096.0, 0.0, 1.0, [1e3, 60.0]);
+    let count = |t: &f64| (t + 0.3).floor() as u32;
+    recording.trace.counts_large = recording.t.iter().map(count).collect();
+    let reference = Reference::of(&recording, 4096).unwrap();
+    let omega = TAU / 4096.0;
+    let mut errors = (reference.omega.iter()).map(|value| (value / omega - 1.0).abs());
+    assert!(errors.all(|error| error < 0.05));
+}
+
 #[test]
 fn rows_are_left_out_where_edges_are_rare() {
     let fast = swinging(90.0, 0.3, 1.5, [10e3, 2.0]);
