@@ -42,6 +42,8 @@ pub(super) enum Row {
     Next,
     /// It begins another motion: the counter has jumped.
     Jumped,
+    /// It begins another motion: a gap of more than [`LONGEST`] periods is before it.
+    Resumed,
     /// Nothing: its count is bad.
     Bad,
 }
@@ -49,7 +51,7 @@ pub(super) enum Row {
 /// The motion of a recording.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
-    /// What each row says of it, as far as its count shows. The length of gaps is not part of it.
+    /// What each row says of it.
     pub rows: Vec<Row>,
     /// Largest displacement from a row to one that continues its motion, counts.
     pub fastest: f64,
@@ -68,8 +70,8 @@ impl Motion {
 /// the few other rows say nothing.
 const LEAST_KNOWN: f64 = 0.5;
 
-/// Whether an estimate is scored at each of `rows` at `rate_hz`: not at a row that is no motion of a shaft, nor
-/// within [`SKIP_S`] after it, as estimators do not know such rows and begin anew. `None` if it is scored at all
+/// Whether an estimate is scored at each of `rows` at `rate_hz`: not at a row that is no motion of a shaft or that
+/// follows a long gap, nor within [`SKIP_S`] after it, as estimators do not know such rows and begin anew. `None` if it is scored at all
 /// of them: there is no such row, or less than [`LEAST_KNOWN`] of the rows would be left.
 pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
     let passed = skipped(rate_hz).max(1);
@@ -77,7 +79,7 @@ pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
     let is_known = |row: &Row| {
         since = match row {
             Row::Next => since + 1,
-            Row::Jumped | Row::Bad => 0,
+            Row::Jumped | Row::Resumed | Row::Bad => 0,
         };
         since >= passed
     };
@@ -90,16 +92,17 @@ pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
 /// Times that a message lists.
 const LISTED: usize = 8;
 
-/// One line on the rows of `recording` that are no motion of a shaft; `None` if there are none. Its scores are
-/// against `reference`, or against a true velocity.
+/// One line on the rows of `recording` that are no motion of a shaft, or that follow a long gap; `None` if there are
+/// none. Its scores are against `reference`, or against a true velocity.
 ///
 /// Estimators do not know these rows: one of them can decide which estimator has the smallest error.
 #[must_use]
 pub fn interruptions(recording: &Recording, reference: Option<&Reference>) -> Option<String> {
     let rows = rows(recording);
     let remedies = [
-        (Row::Bad, "is bad", "delete these rows"),
-        (Row::Jumped, "jumps", "cut the log there"),
+        (Row::Bad, "is bad at", "delete these rows"),
+        (Row::Jumped, "jumps at", "cut the log there"),
+        (Row::Resumed, "has a long gap before", "cut the log there"),
     ];
     let said = remedies.iter().filter_map(|(kind, what, remedy)| {
         let of_kind = rows
@@ -113,19 +116,23 @@ pub fn interruptions(recording: &Recording, reference: Option<&Reference>) -> Op
             1 => " and at 1 row more".to_owned(),
             more => format!(" and at {more} rows more"),
         };
-        (!times.is_empty()).then(|| format!("{what} at t = {listed} s{more}: {remedy}"))
+        (!times.is_empty()).then(|| format!("{what} t = {listed} s{more}: {remedy}"))
     });
     let said: Vec<_> = said.collect();
     let is_left_out = reference.is_some_and(|reference| reference.known.is_some());
-    let scores = match is_left_out {
-        true => format!("scores leave out these rows and {SKIP_S} s after each"),
-        false => "all scores contain what is no motion of a shaft".to_owned(),
+    let has_motion = rows
+        .iter()
+        .all(|row| matches!(row, Row::Next | Row::Resumed));
+    let scores = match (is_left_out, has_motion) {
+        (true, _) => format!("scores leave out these rows and {SKIP_S} s after each"),
+        (false, true) => "all scores contain what estimators do not know there".to_owned(),
+        (false, false) => "all scores contain what is no motion of a shaft".to_owned(),
     };
     (!said.is_empty()).then(|| format!("counts_large {}; {scores}", said.join(", and ")))
 }
 
 /// What each row of `recording` says of the motion.
-fn rows(recording: &Recording) -> Vec<Row> {
+pub(super) fn rows(recording: &Recording) -> Vec<Row> {
     let period = recording.trace.period_s();
     let rows = recording.t.len();
     // Counts per period; rows closer than a period are those of a late clock.
@@ -143,7 +150,10 @@ fn rows(recording: &Recording) -> Vec<Row> {
     for (k, kind) in kinds.iter_mut().enumerate().skip(1) {
         let step = speed(last, k);
         let is_last = k + 1 == rows;
-        if !jumps(step, before) {
+        if recording.t[k] - recording.t[k - 1] > LONGEST * period {
+            *kind = Row::Resumed;
+            (last, before) = (k, step);
+        } else if !jumps(step, before) {
             (last, before) = (k, step);
         } else if is_last || jumps(speed(k, k + 1), before) && !jumps(speed(last, k + 1), before) {
             *kind = Row::Bad;
@@ -433,6 +443,26 @@ mod tests {
         let held: Vec<_> = (0..400).map(|k| k / 10 * 80).collect();
         assert_eq!(marked(&held), []);
         assert_eq!(marked(&vec![7; 40]), []);
+    }
+
+    #[test]
+    fn motion_after_a_long_gap_is_not_that_before_it() {
+        let mut recording = recording(&steady());
+        recording.t[50..].iter_mut().for_each(|t| *t += 0.201);
+        let motion = Motion::of(&recording);
+        let resumed: Vec<_> = (0..100).filter(|k| motion.rows[*k] != Row::Next).collect();
+        assert_eq!((resumed, motion.rows[50]), (vec![50], Row::Resumed));
+        let line = interruptions(&recording, None).unwrap();
+        let said = "counts_large has a long gap before t = 0.251 s: cut the log there; all scores contain what \
+                    estimators do not know there";
+        assert_eq!(line, said);
+        // The displacement over the gap is not that of a row.
+        recording.trace.counts_large[50..]
+            .iter_mut()
+            .for_each(|count| *count += 5000);
+        assert_eq!(Motion::of(&recording).fastest, 3.0);
+        recording.t[50..].iter_mut().for_each(|t| *t -= 2e-3);
+        assert_eq!(Motion::of(&recording).rows[50], Row::Next);
     }
 
     #[test]
