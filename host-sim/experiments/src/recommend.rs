@@ -19,7 +19,7 @@ use terminal::failure::Failure;
 use crate::designed::{designed, with_friction};
 use crate::parallel::in_order;
 use crate::rates::{check_same, refuses};
-use crate::reference::{FEWEST_ROWS, Reference, interruptions};
+use crate::reference::{FEWEST_ROWS, Reference, Truth, interruptions};
 use crate::replay;
 
 pub use table::{lines, reads, table};
@@ -183,7 +183,13 @@ pub fn recommend<'a>(
     for outcome in &outcomes {
         let rate_hz = outcome.recording.trace.rate_hz;
         let interrupted = interruptions(outcome.recording, outcome.reference.as_ref());
-        notes.extend(interrupted.map(|line| format!("{}: {line}", outcome.name)));
+        let mut truth = Truth::default();
+        truth.add(
+            outcome.recording,
+            settings.device.stages.large.counts_per_rev,
+        );
+        let said = interrupted.into_iter().chain(truth.line());
+        notes.extend(said.map(|line| format!("{}: {line}", outcome.name)));
         if let Some(reference) = &outcome.reference {
             let limits = reference.limits(rate_hz);
             notes.push(format!(

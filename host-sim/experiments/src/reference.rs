@@ -21,6 +21,7 @@ mod sections;
 mod state;
 mod sweeps;
 mod thinned;
+mod truth;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -34,6 +35,7 @@ use simulation::trace::Trace;
 use crate::table::number;
 
 pub use sections::interruptions;
+pub use truth::Truth;
 
 use sections::Motion;
 use sweeps::Model;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use experiments::reference::Truth;
 use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
@@ -116,6 +117,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let mut passes = Passes {
         parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
         summary: BoardSummary::default(),
+        truth: Truth::default(),
+        counts_per_rev: device.stages.large.counts_per_rev,
         bar: progress(
             rows.div_ceil(section_rows(rows)) * run.estimates.len(),
             "estimating",
@@ -167,7 +170,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         false => "the default device: no --device given".to_owned(),
     };
     let device_name = format!("{counts_of}{device_name}");
-    if let Some(line) = interruptions {
+    for line in interruptions.into_iter().chain(passes.truth.line()) {
         note(wrapped(&format!("{name}: {line}"), 2));
     }
     if options.deviations && run.estimates.iter().all(|e| e.deviation.is_none()) {

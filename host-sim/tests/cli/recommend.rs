@@ -1,6 +1,7 @@
 //! `host-sim recommend`: which estimator to use on a user's device.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use serde_json::Value;
@@ -17,7 +18,7 @@ fn swing_of(rows: u16) -> String {
     for k in 0..rows {
         let t = f64::from(k) * 1e-3;
         let angle = 2.0 * (1.0 - (10.0 * t).cos());
-        let count = (angle * 4096.0 / std::f64::consts::TAU).floor();
+        let count = (angle * 4096.0 / TAU).floor();
         let _ = writeln!(text, "{t:.3},{count}");
     }
     text
@@ -85,6 +86,43 @@ fn real_motor_gets_estimators_ranked_against_its_truth() {
             .iter()
             .all(|row| row["recommended"] != "cheap")
     );
+}
+
+/// A velocity that is not that of the counts would rank the estimators by its own error.
+#[test]
+fn truth_that_does_not_fit_the_counts_is_named() {
+    let folder = Folder::new(HOST_SIM);
+    // The velocity in rpm where rad/s are read, and as the difference of the counts.
+    let rpm = |before: i64, after: i64| 60e3 / 4096.0 * (after - before) as f64 / 40.0;
+    let counts: Vec<i64> = (swing_of(9000).lines().skip(1))
+        .map(|line| line.split_once(',').unwrap().1.parse().unwrap())
+        .collect();
+    let log = |omega: &dyn Fn(usize) -> f64| -> String {
+        let row = |k: usize| format!("{},{},{}\n", k as f64 * 1e-3, counts[k], omega(k));
+        let rows: String = (20..counts.len() - 20).map(row).collect();
+        format!("t,counts_large,true_omega\n{rows}")
+    };
+    folder.write("rpm.csv", log(&|k| rpm(counts[k - 20], counts[k + 20])));
+    let step = |k: usize| (counts[k] - counts[k - 1]) as f64;
+    folder.write("step.csv", log(&|k| 1e3 * TAU / 4096.0 * step(k)));
+    let tune = ["tune", "--estimator", "low-pass", "--out", "tuned.toml"];
+    for command in [&["recommend"][..], &["replay", "--out", "v.csv"], &tune] {
+        let notes = |arguments: &[&str]| {
+            let output = folder.run(&[command, arguments].concat());
+            assert_eq!(output.status.code(), Some(0), "{command:?}");
+            let notes = String::from_utf8(output.stderr).unwrap();
+            notes.split_whitespace().collect::<Vec<_>>().join(" ")
+        };
+        let said = notes(&["rpm.csv"]);
+        assert!(said.contains("as in rpm: give the unit"), "{said}");
+        let said = notes(&["rpm.csv", "--column", "true_omega=true_omega:rpm"]);
+        assert!(!said.contains("times the velocity"), "{said}");
+        let said = notes(&["step.csv"]);
+        assert!(
+            said.contains("is finite difference of counts_large"),
+            "{said}"
+        );
+    }
 }
 
 /// One bad count in the scores would decide which estimator is the best.

@@ -4,7 +4,7 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use experiments::reference::Reference;
+use experiments::reference::{Reference, Truth};
 use experiments::replay::{self, BoardSummary, Run};
 use indicatif::ProgressBar;
 use recordings::recording::Parts;
@@ -15,6 +15,9 @@ use terminal::output::write_with;
 pub(super) struct Passes<'a> {
     pub(super) parts: Parts<'a>,
     pub(super) summary: BoardSummary,
+    /// Whether the true velocity is that of the counts.
+    pub(super) truth: Truth,
+    pub(super) counts_per_rev: u32,
     pub(super) bar: ProgressBar,
     /// Rows of a section.
     pub(super) section: usize,
@@ -37,6 +40,7 @@ impl Passes<'_> {
             return Ok(false);
         }
         self.passed = self.passed.end..self.passed.end + rows.t.len();
+        self.truth.add(&rows, self.counts_per_rev);
         if let (Some(reference), true) = (self.reference, self.scores) {
             reference.to_trace(&mut rows.trace, self.passed.clone());
         }
