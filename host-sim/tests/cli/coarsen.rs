@@ -173,7 +173,7 @@ fn gap_is_bridged_with_a_note_and_an_unsuitable_clock_is_named() {
         (
             fine().replacen("1,79577\n", "1.003,79577\n", 1),
             "f.csv: its rows come at 1994.02 Hz on the average, which is less than the 2000 Hz of --rate; \
-             ask for at most --rate 1994",
+             ask for at most --rate 1994, or cut the log at its gaps",
         ),
         (
             "t,counts_large\n0,0\n1000,1\n2000,2\n".to_owned(),

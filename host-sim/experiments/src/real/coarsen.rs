@@ -73,7 +73,7 @@ impl Coarse {
         if !self.has_rows(fine) {
             return refused(format!(
                 "its rows come at {rows_hz:.2} Hz on the average, which is less than the {} Hz of --rate; ask \
-                 for at most --rate {:.0}",
+                 for at most --rate {:.0}, or cut the log at its gaps",
                 self.rate_hz,
                 (ROUNDED * rows_hz).floor()
             ));

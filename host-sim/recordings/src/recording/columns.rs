@@ -125,7 +125,7 @@ impl<'a> Columns<'a> {
         }
         let t = self.time(row)?;
         if t < self.last_t {
-            return Err(times::back(row, t, [self.first_t, self.last_t]));
+            return Err(times::back(row, t, [self.first_t, self.last_t], self.taken));
         }
         if t == self.last_t {
             self.repeated.add(row.line, t);

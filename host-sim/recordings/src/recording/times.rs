@@ -38,14 +38,21 @@ pub(super) fn mean_rate(steps: u64, duration_s: f64) -> Option<f64> {
     (hz.is_finite() && hz >= SLOWEST_HZ).then_some(hz)
 }
 
-/// Error for a row at `t` below one at `last`, s. `first` is the first time of the log.
-pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
+/// Largest distance, in mean steps, by which a time goes back where two rows have changed places.
+const SWAPPED: f64 = 1.5;
+
+/// Error for a row at `t` below one at `last`, s. `first` is the first time of the log, of which `taken` rows are above.
+pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2], taken: usize) -> Failure {
     let back = last - t;
+    let steps = back * taken.saturating_sub(1) as f64 / (last - first);
     let remedy = if (t - first).abs() <= NEAR * (last - first) && back < LONGEST_RUN_S {
         "a second run begins: cut the log there"
     } else if lacks_zeros(last, t) {
         "if fractions of a second lack their leading zeros, as .9 before .10, write them with all digits; else sort the \
          rows by time"
+    } else if steps > SWAPPED {
+        "if the clock was set back, cut the log there, because sorted rows would mix two motions; else sort the rows by \
+         time, or remove the row"
     } else {
         "sort the rows by time, or remove the row"
     };
@@ -195,11 +202,17 @@ mod tests {
                 &[700, 800, 900, 100],
                 "if fractions of a second lack their leading zeros, as .9 before .10, write them with all digits",
             ),
-            ("s", &[700, 800, 900, 300], "sort the rows by time"),
+            // A row at another place, and a clock that was set.
+            ("s", &[700, 800, 900, 300], "else sort the rows by time"),
+            (
+                "ms",
+                &[5, 6, 7, 8, 9, 10, 11, 8],
+                "0.008 s is before the 0.011 s above it; if the clock was set back, cut the log there",
+            ),
             (
                 "ms",
                 &[5, 6, 8, 7],
-                "sort the rows by time, or remove the row",
+                "s above it; sort the rows by time, or remove the row",
             ),
         ] {
             let time = |t: &u64| match unit {

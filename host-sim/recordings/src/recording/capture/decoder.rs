@@ -105,7 +105,7 @@ impl Decoder {
     fn advance(&mut self, t: f64, row: &Row) -> Result<(), Failure> {
         let first = *self.first.get_or_insert(t);
         if t < self.last {
-            return Err(back(row, t, [first, self.last]));
+            return Err(back(row, t, [first, self.last], 0));
         }
         let rows = (t - first) * self.rate_hz;
         if rows > MOST_ROWS {
