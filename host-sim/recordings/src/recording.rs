@@ -35,6 +35,7 @@ pub use options::stated::{counts_per_rev_line, stated_counts_per_rev};
 pub use parts::Parts;
 pub(crate) use records::kinds::check as check_kind;
 pub use survey::Survey;
+pub use times::clock::LONGEST_GAP;
 pub use times::steps::SLOWEST_HZ;
 
 use crate::log::Log;

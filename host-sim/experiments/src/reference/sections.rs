@@ -8,11 +8,11 @@
 mod spikes;
 
 use super::Reference;
-use recordings::recording::{Recording, shown};
+use recordings::recording::{LONGEST_GAP, Recording, shown};
 use scoring::score::{SKIP_S, skipped};
 
 /// Longest interval over which the motion is followed, periods.
-pub(super) const LONGEST: f64 = 200.0;
+pub(super) const LONGEST: f64 = LONGEST_GAP;
 
 /// A displacement is no motion if it is this number of times larger than the displacements beside it,
 /// plus one count, and than [`USUAL`] of all. An impact has large displacements beside it, and a count

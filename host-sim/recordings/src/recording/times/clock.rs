@@ -95,6 +95,9 @@ pub(crate) fn fast(rate_hz: f64) -> Option<String> {
     })
 }
 
+/// Longest gap over which a motion is followed, periods.
+pub const LONGEST_GAP: f64 = 200.0;
+
 /// Gaps of `t` in which rows are missing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Gaps {
@@ -103,6 +106,8 @@ pub(crate) struct Gaps {
     number: u64,
     rows: f64,
     most: f64,
+    /// Time after the gap in which the most rows are missing.
+    end: f64,
     /// Time that all steps have more than a period each, in periods.
     excess: f64,
 }
@@ -116,7 +121,9 @@ impl Gaps {
             self.first = self.first.or_else(|| Some((line(), t)));
             self.number += 1;
             self.rows += missing;
-            self.most = self.most.max(missing);
+            if missing > self.most {
+                (self.most, self.end) = (missing, t);
+            }
         }
     }
 
@@ -129,10 +136,19 @@ impl Gaps {
             number, rows, most, ..
         } = self;
         let are_late = *most == 1.0 && self.excess < rows / 2.0;
-        (!are_late).then(|| format!(
-            "{rows} rows are missing in {number} gaps of at most {most}, the first before line {line} at \
-             {t} s"
-        ))
+        let remedy = match *most > LONGEST_GAP {
+            true => format!(
+                "; cut the log before t = {} s: resampled rows in this gap are a straight line",
+                shown(self.end)
+            ),
+            false => String::new(),
+        };
+        (!are_late).then(|| {
+            format!(
+                "{rows} rows are missing in {number} gaps of at most {most}, the first before line {line} at \
+                 {t} s{remedy}"
+            )
+        })
     }
 }
 
@@ -236,6 +252,23 @@ mod tests {
                 .unwrap()
                 .starts_with("10 rows are missing in 10 gaps of at most 1")
         );
+    }
+
+    #[test]
+    fn longest_gap_is_to_be_cut_if_a_motion_is_not_followed_over_it() {
+        let note = |missing: u32| {
+            let mut gaps = Gaps::default();
+            gaps.add(3e-3, 1000.0, 0.5, || 7);
+            let step = f64::from(missing + 1) * 1e-3;
+            gaps.add(step, 1000.0, 1.0 + step, || 9);
+            gaps.add(3e-3, 1000.0, 2.0, || 11);
+            gaps.note().unwrap()
+        };
+        let short =
+            "204 rows are missing in 3 gaps of at most 200, the first before line 7 at 0.5 s";
+        assert_eq!(note(200), short);
+        let cut = "at 0.5 s; cut the log before t = 1.202 s: resampled rows in this gap are a straight line";
+        assert!(note(201).ends_with(cut), "{}", note(201));
     }
 
     #[test]
