@@ -143,12 +143,13 @@ impl Gaps {
             ),
             false => String::new(),
         };
-        (!are_late).then(|| {
-            format!(
-                "{rows} rows are missing in {number} gaps of at most {most}, the first before line {line} at \
-                 {t} s{remedy}"
-            )
-        })
+        let are = if *rows == 1.0 { "row is" } else { "rows are" };
+        let gaps = match number {
+            1 => "a gap".to_owned(),
+            _ => format!("{number} gaps of at most {most}, the first"),
+        };
+        (!are_late)
+            .then(|| format!("{rows} {are} missing in {gaps} before line {line} at {t} s{remedy}"))
     }
 }
 
@@ -269,6 +270,16 @@ mod tests {
         assert_eq!(note(200), short);
         let cut = "at 0.5 s; cut the log before t = 1.202 s: resampled rows in this gap are a straight line";
         assert!(note(201).ends_with(cut), "{}", note(201));
+        let mut one = Gaps::default();
+        one.add(2e-3, 1000.0, 0.5, || 7);
+        assert_eq!(
+            one.note().unwrap(),
+            "1 row is missing in a gap before line 7 at 0.5 s"
+        );
+        let mut one = Gaps::default();
+        one.add(4e-3, 1000.0, 0.6, || 9);
+        let said = "3 rows are missing in a gap before line 9 at 0.6 s";
+        assert_eq!(one.note().unwrap(), said);
     }
 
     #[test]
