@@ -83,3 +83,24 @@ pub(crate) fn rows(bytes: &[u8]) -> (u64, Vec<Vec<f64>>) {
     let width = (values.len() / number.max(1)).max(1);
     (first, values.chunks(width).map(<[f64]>::to_vec).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A page finds lost rows by their numbers: those that a cut drops are lost.
+    #[test]
+    fn rows_of_a_new_epoch_have_the_next_numbers() {
+        let mut batch = Batch::new();
+        batch.add(&[1.0, 2.0]);
+        batch.add(&[3.0, 4.0]);
+        batch.cut();
+        assert_eq!(batch.rest(), None);
+        batch.add(&[5.0, 6.0]);
+        let bytes = batch.rest().expect("a row");
+        assert_eq!(rows(&bytes), (2, vec![vec![5.0, 6.0]]));
+        assert_eq!(bytes[4..8], 1_u32.to_le_bytes());
+        batch.add(&[7.0, 8.0]);
+        assert_eq!(batch.rest().map(|bytes| rows(&bytes).0), Some(3));
+    }
+}

@@ -79,3 +79,58 @@ impl FaultWatch {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fault at 1 ms.
+    fn watch() -> FaultWatch {
+        let fault = "stuck-a".parse().expect("a fault");
+        FaultWatch::new(fault, 1_000_000, true)
+    }
+
+    fn frame(state: Mode, cause: Stop) -> Frame {
+        Frame {
+            state: state as u8,
+            cause: cause as u8,
+            ..Frame::default()
+        }
+    }
+
+    #[test]
+    fn time_until_off_is_that_of_both_amplifiers_since_the_fault() {
+        let mut watch = watch();
+        watch.enables(&[(500_000, [false; 2]), (600_000, [true; 2])]);
+        watch.enables(&[(2_000_000, [false, true])]);
+        assert!(watch.json()["off_ms"].is_null());
+        watch.enables(&[(3_500_000, [false; 2]), (9_000_000, [false; 2])]);
+        watch.enables(&[(12_000_000, [false; 2])]);
+        assert_eq!(watch.json()["off_ms"], 2.5);
+    }
+
+    #[test]
+    fn cause_is_the_first_one_after_which_the_board_is_off() {
+        let mut watch = watch();
+        for (state, cause) in [
+            // A silence switched the scene off before.
+            (Mode::Armed, Stop::CommandTimeout),
+            (Mode::Safe, Stop::Stall),
+            (Mode::Safe, Stop::Jump),
+        ] {
+            watch.frame(2_000_000, &frame(state, cause), 0.0);
+        }
+        assert_eq!(watch.json()["cause"], Stop::Stall.as_str());
+    }
+
+    #[test]
+    fn peak_is_the_largest_force_to_either_side_within_a_second() {
+        let mut watch = watch();
+        let frame = frame(Mode::Running, Stop::None);
+        for (ms, force_mn) in [(2, 3.0), (3, -7.0), (4, f64::NAN), (1001, 50.0)] {
+            watch.frame(ms * 1_000_000, &frame, force_mn);
+        }
+        assert_eq!(watch.json()["peak_mn"], 7.0);
+        assert_eq!(watch.json()["is_over"], true);
+    }
+}

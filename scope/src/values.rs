@@ -96,3 +96,45 @@ impl Conversion {
         values.tactile = self.tactile.next(values.parasitic, seq);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn velocity_that_a_scene_does_not_need_has_no_value() {
+        let mut conversion = Conversion::new(&Device::default());
+        let mut velocity = |sigma_large: f32| {
+            let frame = Frame {
+                sigma_large,
+                velocity_large: 3.0,
+                ..Frame::default()
+            };
+            conversion.values(0.0, &frame, None).velocity_large
+        };
+        assert_eq!(velocity(0.5), 3.0);
+        assert!(velocity(0.0).is_nan());
+    }
+
+    #[test]
+    fn force_is_the_torque_over_the_radius_and_what_the_scene_does_not_want_is_parasitic() {
+        let device = Device::default();
+        let frame = Frame {
+            torque: 0.25,
+            ..Frame::default()
+        };
+        let truth = Truth {
+            t: 0.0,
+            large: [0.0; 2],
+            handle: [0.0; 2],
+            felt: 0.75,
+            currents: [0.0; 2],
+            instructions: 0,
+            hand: None,
+        };
+        let values = Conversion::new(&device).values(0.0, &frame, Some(&truth));
+        let torque_nm = |force_mn: f64| force_mn / 1e3 * device.handle.diameter_m / 2.0;
+        assert!((torque_nm(values.force) - 0.75).abs() < 1e-9);
+        assert!((torque_nm(values.parasitic) - 0.5).abs() < 1e-9);
+    }
+}
