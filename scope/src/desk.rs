@@ -329,6 +329,118 @@ mod tests {
             assert!(desk.order(&order).is_some());
             assert_eq!(!desk.refusals.json().is_null(), is_told, "{order:?}");
         }
+        let counts = Rejected {
+            unknown: 2,
+            ..Rejected::default()
+        };
+        desk.message(counts.into(), None);
+        assert!(!desk.refusals.json().is_null());
+        assert!(desk.order(&Order::Disarm).is_some());
+        assert!(desk.refusals.json().is_null());
+    }
+
+    /// The desk of a board of 10 kHz that has told its identity and sent a frame.
+    fn desk() -> Desk {
+        let (hub, _orders) = Hub::new("token".to_owned(), Value::Null);
+        let mut desk = Desk::new(hub, &Device::default()).expect("a desk");
+        desk.message(crate::order::tests::hello().into(), None);
+        desk.message(frame(100, 1000).into(), None);
+        desk
+    }
+
+    /// A frame of a motor that turns.
+    fn frame(seq: u32, tick: u32) -> Frame {
+        Frame {
+            seq,
+            tick,
+            counts_large: tick,
+            state: Mode::Running as u8,
+            ..Frame::default()
+        }
+    }
+
+    /// The estimates of the latest row.
+    fn estimates(desk: &mut Desk) -> Vec<f64> {
+        let bytes = desk.batch.rest().expect("a row");
+        let (_, rows) = crate::batch::rows(&bytes);
+        let latest = rows.last().expect("a row");
+        latest[channels::CHANNELS.len()..].to_vec()
+    }
+
+    #[test]
+    fn scene_that_is_refused_or_ended_by_disarm_is_not_shown() {
+        let wall = Order::Scene { number: 2 };
+        let mut desk = desk();
+        assert!(desk.order(&wall).is_some());
+        assert_eq!(desk.selection.scene(), 2);
+        assert!(desk.order(&Order::Disarm).is_some());
+        assert_eq!(desk.selection.scene(), 0);
+        for (unverified, shown) in [(0, 2), (1, 0)] {
+            assert!(desk.order(&wall).is_some());
+            let counts = Rejected {
+                unverified,
+                ..Rejected::default()
+            };
+            desk.message(counts.into(), None);
+            assert_eq!(desk.selection.scene(), shown);
+        }
+    }
+
+    #[test]
+    fn set_point_and_parameters_are_shown_as_the_board_has_them() {
+        let torque = haptic_control::SceneKind::Torque.number();
+        let tune = |scene: u8, parameter: u8, value: f32| Order::Tune {
+            scene,
+            parameter,
+            value,
+        };
+        let mut desk = desk();
+        for order in [tune(torque, 0, 0.0078125), tune(2, 1, 0.25)] {
+            assert!(desk.order(&order).is_some());
+        }
+        assert!(desk.order(&Order::Scene { number: torque }).is_some());
+        assert_eq!(desk.tuned.json(), json!({ "2.1": 0.25 }));
+        // The board starts again.
+        desk.message(Frame::default().into(), None);
+        assert_eq!(desk.tuned.json(), json!({}));
+        assert_eq!(desk.selection.scene(), 0);
+    }
+
+    #[test]
+    fn estimates_begin_again_and_time_goes_on_by_a_second_behind_missing_frames() {
+        let mut desk = desk();
+        desk.message(frame(101, 1010).into(), None);
+        assert!(estimates(&mut desk).iter().any(|it| *it != 0.0));
+        let before = desk.t();
+        desk.message(frame(103, 1030).into(), None);
+        assert!(estimates(&mut desk).iter().all(|it| *it == 0.0));
+        assert!((desk.t() - before - 2e-3).abs() < 1e-9);
+        let before = desk.t();
+        desk.message(frame(900_000, 9_000_000).into(), None);
+        assert!((desk.t() - before - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn recording_ends_with_the_board_and_when_it_is_full() {
+        let record = Order::Record { on: true };
+        let mut desk = desk();
+        assert_eq!(desk.order(&record), None);
+        desk.message(frame(101, 1010).into(), None);
+        // A second order does not begin anew.
+        assert_eq!(desk.order(&record), None);
+        assert_eq!(desk.recorder.as_ref().map(Recorder::len), Some(1));
+        desk.restarted();
+        assert!(desk.recorder.is_none() && desk.hub.recording().is_some());
+
+        let mut recorder = Recorder::new(&Hello::default());
+        for seq in 2..crate::recorder::LONGEST as u32 {
+            recorder.row(seq, &[], f64::NAN);
+        }
+        desk.recorder = Some(recorder);
+        desk.message(frame(1, 10).into(), None);
+        assert!(desk.recorder.is_some());
+        desk.message(frame(2, 20).into(), None);
+        assert!(desk.recorder.is_none());
     }
 
     /// Nobody else sees the restart of a board at a port. An order to store would store what the flash had.

@@ -84,5 +84,12 @@ mod tests {
         assert_eq!(told(9, 2, 1), (refused.to_owned(), false));
         assert!(told(9, 2, 2).1);
         assert_eq!(told(0, 0, 0), (String::new(), false));
+        // The counts of a new board are not compared with those of the old one.
+        refusals.restarted();
+        assert!(!refusals.take(&Rejected {
+            unverified: 5,
+            ..Rejected::default()
+        }));
+        assert!(refusals.json().is_null());
     }
 }
