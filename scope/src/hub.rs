@@ -315,6 +315,23 @@ mod tests {
     }
 
     #[test]
+    fn page_that_is_not_heard_gives_the_command_to_the_next_one() {
+        let (hub, _orders) = hub();
+        let heard = |heard: Instant| *locked(&hub.commander) = Some(Commander { page: 1, heard });
+        let now = Instant::now();
+        let [stale, lately] = [now.checked_sub(2 * STALE), now.checked_add(60 * STALE)];
+        assert!(hub.is_abandoned() && !hub.commands(1));
+        heard(lately.expect("a time"));
+        assert!(!hub.is_abandoned() && !hub.join(2));
+        heard(stale.expect("a time"));
+        assert!(hub.is_abandoned() && !hub.commands(2) && hub.commands(1));
+        let latest = (*locked(&hub.commander)).map(|now| now.heard);
+        assert!(latest >= Some(now), "each message counts");
+        heard(stale.expect("a time"));
+        assert!(hub.join(2) && !hub.commands(1));
+    }
+
+    #[test]
     fn orders_are_bounded_and_the_hand_has_its_latest_one() {
         let (hub, orders) = hub();
         for k in 0..3 * ORDERS {

@@ -236,6 +236,27 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn silent_board_gets_no_command_but_disarm() {
+        let commands = [Order::Arm, Order::Alive, Order::Store, Order::Settings];
+        assert!(commands.iter().all(Order::needs_an_answer));
+        // The others are none of the board.
+        for order in [Order::Disarm, Order::Restart, Order::Record { on: false }] {
+            assert!(!order.needs_an_answer(), "{order:?}");
+        }
+    }
+
+    #[test]
+    fn time_and_speed_of_a_playback_are_numbers_within_bounds() {
+        let is_speed = |factor| Order::Speed { factor }.check().is_ok();
+        assert!(is_speed(0.01) && is_speed(100.0));
+        for factor in [0.0, -1.0, 101.0, f64::NAN] {
+            assert!(!is_speed(factor), "{factor}");
+        }
+        let is_time = |to| Order::Seek { to }.check().is_ok();
+        assert!(is_time(-1e3) && !is_time(f64::NAN) && !is_time(f64::INFINITY));
+    }
+
+    #[test]
     fn estimator_that_the_image_does_not_have_is_refused() {
         let set = |value| Order::Set {
             setting: Setting::Estimator.number(),

@@ -16,8 +16,8 @@ fn setting(number: u8, value: f32) -> Message {
 #[test]
 fn settings_are_shown_when_all_have_come() {
     let mut bench = Bench::default();
-    // The end of an answer from before, and one in which a message was lost.
-    for (number, value) in [(2, 9.0), (0, 7.0), (2, 8.0)] {
+    // The end of an answer from before, one in which a message was lost, and one without its begin.
+    for (number, value) in [(2, 9.0), (0, 7.0), (2, 8.0), (1, 6.0)] {
         bench.message(&setting(number, value));
         assert_eq!(bench.settings, None);
     }
@@ -87,7 +87,13 @@ fn procedure_holds_other_commands_back_until_the_order_to_disarm() {
         guide: Some(Guide::start(Guided::BringUp)),
         ..Bench::default()
     };
-    assert!(!bench.order(&Order::Alive, true) && !bench.order(&Order::Arm, true));
+    let set = Order::Set {
+        setting: 0,
+        value: 1.0,
+    };
+    for order in [Order::Alive, Order::Arm, Order::Store, set] {
+        assert!(!bench.order(&order, true), "{order:?}");
+    }
     assert!(bench.order(&Order::Record { on: true }, true));
     bench.abandon("ended by Disarm");
     assert!(bench.order(&Order::Disarm, true) && bench.order(&Order::Arm, true));
@@ -145,6 +151,11 @@ fn calibration_that_is_ended_is_undone_before_anything_can_be_stored() {
         bench.abandon("ended by Disarm");
         assert_eq!(bench.json()["undoes"], undoes);
         assert_eq!(bench.order(&Order::Store, true), !undoes);
+        if undoes {
+            let name = "bring-up".to_owned();
+            bench.order(&Order::Guide { name }, true);
+            assert_eq!(bench.json()["guide"]["name"], "calibrate");
+        }
         let zero = encode(Command::Set {
             setting: 0,
             value: 2048.0,
@@ -156,6 +167,27 @@ fn calibration_that_is_ended_is_undone_before_anything_can_be_stored() {
         answer(&mut bench, 2048.0);
         assert!(bench.order(&Order::Store, true));
     }
+}
+
+#[test]
+fn calibration_is_undone_to_the_settings_of_its_own_begin() {
+    let mut bench = Bench {
+        before: Some(vec![2036.0; 3]),
+        ..Bench::default()
+    };
+    let name = "calibrate".to_owned();
+    bench.order(&Order::Guide { name }, true);
+    for number in 0..3 {
+        bench.message(&setting(number, 2048.0));
+    }
+    bench.abandon("ended by Disarm");
+    bench.message(&Message::Stored(Stored { outcome: 1 }));
+    let zero = encode(Command::Set {
+        setting: 0,
+        value: 2048.0,
+    });
+    let sent = bench.take_bytes(false);
+    assert!(sent.starts_with(&zero), "{sent:?}");
 }
 
 #[test]

@@ -278,9 +278,8 @@ mod tests {
 
     use super::*;
 
-    /// The line of a board in slow motion takes the orders of a page later than they come.
-    #[test]
-    fn order_that_waits_for_the_line_does_not_follow_the_disarm_of_its_page() {
+    /// The client of a board, and its hub.
+    fn seat() -> (Arc<Hub>, Seat) {
         let (hub, orders) = Hub::new("token".to_owned(), Value::Null);
         let desk = Desk::new(Arc::clone(&hub), &Device::default()).expect("a desk");
         let table = Table {
@@ -289,22 +288,42 @@ mod tests {
             restarts: false,
             offset_s: 0.0,
         };
-        let mut seat = Seat::new(&Arc::new(Mutex::new(table)));
-        let mut sent = |waiting| {
-            let mut acts = Acts::default();
-            let seen = Seen {
-                at_ns: 1,
-                sent: &[],
-                waiting,
-                ticks: &[],
-                restarts: 0,
-                currents: [0.0; 2],
-                enables: &[],
-                hand: None,
-            };
-            assert!(seat.look(&seen, &mut acts));
-            acts.send
+        (hub, Seat::new(&Arc::new(Mutex::new(table))))
+    }
+
+    /// What is done at a board that sends nothing, with so many bytes on their way to it.
+    fn look(seat: &mut Seat, waiting: usize) -> Acts {
+        let mut acts = Acts::default();
+        let seen = Seen {
+            at_ns: 1,
+            sent: &[],
+            waiting,
+            ticks: &[],
+            restarts: 0,
+            currents: [0.0; 2],
+            enables: &[],
+            hand: None,
         };
+        assert!(seat.look(&seen, &mut acts));
+        acts
+    }
+
+    /// A page that freezes holds no handle. Nobody commands here.
+    #[test]
+    fn hand_of_a_page_that_is_not_heard_lets_go_once() {
+        let (hub, mut seat) = seat();
+        let mut hand = || look(&mut seat, 0).hand;
+        hub.order(Order::Hand { at: Some(0.25) });
+        assert!(matches!(hand(), Some(Hold::At(0.25))));
+        assert!(matches!(hand(), Some(Hold::Free)));
+        assert!(hand().is_none());
+    }
+
+    /// The line of a board in slow motion takes the orders of a page later than they come.
+    #[test]
+    fn order_that_waits_for_the_line_does_not_follow_the_disarm_of_its_page() {
+        let (hub, mut seat) = seat();
+        let mut sent = |waiting| look(&mut seat, waiting).send;
         let page = hub.enter();
         assert!(hub.join(page));
         let [arm, disarm] = [Request::Arm, Request::Disarm].map(|it| encode(Command::Request(it)));

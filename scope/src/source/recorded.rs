@@ -326,6 +326,22 @@ mod tests {
         }
     }
 
+    /// At a high speed a step would have more rows than a page can take.
+    #[test]
+    fn time_of_a_step_with_too_many_rows_is_that_of_its_last_row() {
+        let rows: Vec<Vec<f64>> = (0..5000).map(|k| vec![f64::from(k)]).collect();
+        let mut player = Player {
+            next: 0,
+            at: 0.0,
+            plays: true,
+            speed: 100.0,
+            batch: Batch::new(),
+        };
+        player.advance(40.0, &rows);
+        assert_eq!((player.next, player.at), (2000, 1999.0));
+        assert!(player.plays);
+    }
+
     #[test]
     fn player_seeks_pauses_and_ends() {
         let rows: Vec<Vec<f64>> = (0..100).map(|k| vec![f64::from(k) * 0.01]).collect();
