@@ -74,6 +74,8 @@ struct Shared {
     is_frozen: AtomicBool,
     /// Whether the board closes its end.
     hangs_up: AtomicBool,
+    /// Whether another image speaks a later protocol.
+    is_updated: AtomicBool,
     /// Whether the order to disarm ends the scene.
     obeys: bool,
     commands: Mutex<Vec<Command>>,
@@ -81,7 +83,7 @@ struct Shared {
 
 /// Sends the identity and a frame of a running scene again and again, but while it is frozen.
 fn play(mut stream: TcpStream, shared: &Shared) {
-    let hello = Hello {
+    let mut hello = Hello {
         protocol: PROTOCOL,
         rate: 10_000,
         ..Hello::default()
@@ -115,6 +117,9 @@ fn play(mut stream: TcpStream, shared: &Shared) {
         if shared.is_frozen.load(Ordering::Relaxed) {
             continue;
         }
+        if shared.is_updated.load(Ordering::Relaxed) {
+            hello.protocol = PROTOCOL + 1;
+        }
         frame.seq += 1;
         frame.tick += 10;
         for message in [Message::from(hello), frame.into()] {
@@ -141,6 +146,58 @@ fn board_that_runs_a_scene_already_is_disarmed() {
     let disarm = Command::Request(Request::Disarm);
     let others = commands.iter().find(|it| **it != Command::Identify);
     assert_eq!(others, Some(&disarm), "{commands:?}");
+}
+
+/// The first order may be lost on its way.
+#[test]
+fn board_that_stays_enabled_is_disarmed_again() {
+    let (shared, port) = played(Shared::default());
+    let server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let disarm = Command::Request(Request::Disarm);
+    server.client().wait("orders to disarm", |_, _| {
+        let commands = shared.commands.lock().expect("a list");
+        let orders = commands.iter().filter(|it| **it == disarm);
+        (orders.count() >= 3).then_some(())
+    });
+}
+
+#[test]
+fn page_that_has_gone_disarms_the_board() {
+    let (shared, port) = played(Shared {
+        obeys: true,
+        ..Shared::default()
+    });
+    let server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let mut page = server.joined();
+    page.lives = true;
+    // The order of the server, which found the board enabled, is past.
+    page.status("disarmed", |status| status["mode"] == "boot");
+    shared.commands.lock().expect("a list").clear();
+    drop(page);
+    server.client().wait("an order to disarm", |_, _| {
+        let commands = shared.commands.lock().expect("a list");
+        let disarm = Command::Request(Request::Disarm);
+        commands.contains(&disarm).then_some(())
+    });
+}
+
+/// Its messages would be misunderstood.
+#[test]
+fn board_that_is_given_an_image_of_another_protocol_ends_the_server() {
+    let (shared, port) = played(Shared {
+        obeys: true,
+        ..Shared::default()
+    });
+    let mut server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let mut page = server.client();
+    page.status("frames", |status| !status["mode"].is_null());
+    shared.is_updated.store(true, Ordering::Relaxed);
+    let why = page.wait("an end", |_, message| {
+        (message["type"] == "ended").then(|| message["why"].to_string())
+    });
+    assert!(why.contains("protocol"), "{why}");
+    let status = server.child.wait().expect("an end");
+    assert_eq!(status.code(), Some(2));
 }
 
 #[test]

@@ -98,6 +98,25 @@ fn one_page_commands_and_the_other_watches_until_the_first_has_gone() {
     assert_eq!(second.role()["commands"], true);
 }
 
+/// The controls of a page that was frozen would seem to work otherwise.
+#[test]
+fn page_that_froze_is_told_that_another_one_commands() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/data/logs/missing-rows.csv"
+    );
+    let server = Server::start(&["--recording", path]);
+    let mut frozen = server.joined();
+    assert_eq!(frozen.role()["commands"], true);
+    let mut other = server.joined();
+    while other.role()["commands"] == false {
+        other.status("some time", |_| true);
+        other.order(&json!({"do": "join", "token": server.token}));
+    }
+    frozen.order(&json!({"do": "alive"}));
+    assert_eq!(frozen.role()["commands"], false);
+}
+
 #[test]
 fn device_goes_safe_when_keep_alives_stop() {
     let server = Server::emulated();
@@ -208,9 +227,11 @@ fn board_whose_core_is_halted_is_silent_until_a_new_one_starts() {
     let status = page.status("no command", |_| true);
     assert_eq!(status["scene"], 0);
     page.order(&json!({"do": "restart"}));
-    page.status("a new board", |status| {
+    let later = page.status("a new board", |status| {
         status["mode"] == "boot" && status["silent"].is_null()
     });
+    // The time of a page goes on.
+    assert!(later["t"].as_f64() > status["t"].as_f64(), "{later}");
 }
 
 #[test]
@@ -223,6 +244,10 @@ fn parameters_are_told_until_the_board_starts_anew() {
     page.status("a value", is_kept);
     // Another page has it too, and a value out of bounds changes nothing.
     page.order(&tune(1, 100.0));
+    page.wait("a refusal", |_, message| {
+        let why = message["why"].as_str().unwrap_or_default();
+        (message["type"] == "refused" && why.contains("out of bounds")).then_some(())
+    });
     server.client().status("the value", is_kept);
     page.order(&json!({"do": "disarm"}));
     page.status("disarmed", |status| {
