@@ -184,7 +184,7 @@ fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
         return;
     };
     let second = browser.open(&server.url(), 390, 844);
-    browser.wait(&second, "scope.role?.commands === false && $('commands').disabled && !$('role').hidden && scope.frames > 2");
+    browser.wait(&second, "scope.role?.commands === false && $('commands').disabled && !$('role').hidden && !$('take').hidden && scope.frames > 2");
     // The narrow page needs no horizontal scroll.
     browser.wait(&second, "document.documentElement.scrollWidth <= 390");
     let wide = "[...document.querySelectorAll('main *')].filter((e) => e.getBoundingClientRect().right > 391 && !e.closest('.u-legend, .uplot')).map((e) => e.id || e.className)";

@@ -23,7 +23,11 @@ fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
     browser.wait(&tab, "$('settings').querySelector(':invalid') === null");
     // What is out of the bounds stays in its field, and is not sent.
     enter(&mut browser, "1.5");
-    browser.wait(&tab, "!$('setting-current-scale').checkValidity()");
+    browser.value(&tab, "window.at = scope.status.t, 0");
+    browser.wait(
+        &tab,
+        "scope.status.t > window.at && !$('setting-current-scale').checkValidity()",
+    );
     enter(&mut browser, "0.5");
     browser.wait(&tab, "$('setting-current-scale').value === '0.5'");
     for attempt in 1.. {
@@ -46,6 +50,10 @@ fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
     );
     browser.click(&tab, "#store");
     browser.wait(&tab, "$('stored').textContent === 'Settings stored.'");
+    browser.wait(&tab, "!$('store').disabled");
+    browser.click(&tab, "#arm");
+    browser.wait(&tab, "scope.status.on && $('store').disabled");
+    assert_eq!(browser.value(&tab, "scope.status.counts.refused"), 0);
     browser.value(&tab, "$('bench-card').scrollIntoView()");
     browser.picture(&tab, "settings.png");
     assert_eq!(browser.complaints, [""; 0]);
