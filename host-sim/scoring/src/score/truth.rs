@@ -277,9 +277,12 @@ fn neighbours<T: Copy>(values: &[T], ranges: &[Range<usize>]) -> impl Iterator<I
 
 /// The samples that `some` and `others` have in common. Both are in order.
 fn common(some: &[Range<usize>], others: &[Range<usize>]) -> Vec<Range<usize>> {
-    let pairs = some.iter().flat_map(|a| others.iter().map(move |b| (a, b)));
-    let common = pairs.map(|(a, b)| a.start.max(b.start)..a.end.min(b.end));
-    common.filter(|range| !range.is_empty()).collect()
+    let common = some.iter().flat_map(|a| {
+        let first = others.partition_point(|b| b.end <= a.start);
+        let meet = others[first..].iter().take_while(|b| b.start < a.end);
+        meet.map(|b| a.start.max(b.start)..a.end.min(b.end))
+    });
+    common.collect()
 }
 
 /// Whether a velocity is within two of its standard deviations of the true one.

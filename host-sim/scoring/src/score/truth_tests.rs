@@ -347,3 +347,12 @@ fn samples_at_which_the_truth_is_not_known_are_in_no_score() {
         Score::default()
     );
 }
+
+#[test]
+fn common_samples_of_ranges_are_in_both() {
+    let some = [3..10, 12..14, 20..30];
+    let others = [0..3, 4..6, 8..12, 12..13, 29..40];
+    assert_eq!(common(&some, &others), [4..6, 8..10, 12..13, 29..30]);
+    assert_eq!(common(&some, &[]), []);
+    assert_eq!(common(&[], &some), []);
+}
