@@ -41,7 +41,36 @@ pub(crate) fn of_arrays(note: &str) -> String {
         }
     };
     let note = unwrapped(note.to_owned(), "counts_large", "counts");
-    in_python(&unwrapped(note, "counts_small", "coupled"))
+    attributes(&in_python(&unwrapped(note, "counts_small", "coupled")))
+}
+
+/// A message with the names of a `Recording` in the place of those of the columns of a log, but where a column is
+/// named with `columns=` or `modulus=`.
+fn attributes(message: &str) -> String {
+    let phrases = [
+        ("no column true_omega", "no true_velocity"),
+        ("rename the column for", "leave it out for"),
+        ("shift the column", "shift it"),
+    ];
+    let text = (phrases.iter()).fold(message.to_owned(), |text, (column, attribute)| {
+        text.replace(column, attribute)
+    });
+    let names = [
+        ("true_omega", "true_velocity"),
+        ("counts_large", "counts"),
+        ("counts_small", "coupled"),
+    ];
+    names.iter().fold(text, |text, (column, attribute)| {
+        let mut renamed = String::new();
+        for (at, part) in text.split(column).enumerate() {
+            let is_option = renamed.ends_with(['=', '\'']);
+            if at > 0 {
+                renamed += if is_option { column } else { attribute };
+            }
+            renamed += part;
+        }
+        renamed
+    })
 }
 
 /// A message on the times of arrays, which have no unit that an option states.

@@ -298,6 +298,23 @@ def test_every_type_error_names_the_argument():
         assert str(error.value).startswith(said)
 
 
+def test_notes_on_recordings_name_their_attributes():
+    t = np.arange(6000) / 1000
+    counts = np.floor(4096 * np.sin(2 * t)).astype(int)
+    velocity = 2 * np.pi * 2 * np.cos(2 * t)
+    for true, said in (
+        (-velocity, "true_velocity is -1.000 times the velocity of counts, reverse the sign"),
+        (0 * velocity, "true_velocity is 0, and counts moves: leave it out for scores against a reference"),
+        (velocity * 30 / np.pi, "as in rpm: give the unit, columns=true_omega=NAME:rpm"),
+    ):
+        log = limpid.Recording(counts, 1000, true_velocity=true, counts_per_rev=4096, name="log")
+        assert any(said in note for note in limpid.recommend(log).notes)
+    counts[3000] += 500
+    notes = limpid.recommend(limpid.Recording(counts, 1000, counts_per_rev=4096, name="log")).notes
+    assert notes[0].startswith("log: counts is bad at t = 3 s: delete these rows")
+    assert notes[1].startswith("log: no true_velocity; scores are against a reference")
+
+
 def test_logs_are_recordings_and_each_is_given_once():
     for logs in (None, 5, "motor.csv", COUNTS, [], [5]):
         for call in (limpid.recommend, limpid.tune) if logs is not None else (limpid.recommend,):

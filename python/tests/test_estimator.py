@@ -273,7 +273,7 @@ def test_handler_of_a_signal_is_refused_the_estimator_that_it_interrupts(signals
 def test_counter_of_16_bits_has_the_bits_of_replay_with_its_modulus():
     counts = (np.arange(40_000) * 3).astype(np.uint16)
     replayed = limpid.replay(counts, 1000)
-    assert replayed.notes[0].startswith("counts_large wraps at 65536 and is unwrapped")
+    assert replayed.notes[0].startswith("counts wraps at 65536 and is unwrapped")
     streamed = limpid.Estimator("imm", rate=1000, modulus=65536).process(counts).velocity
     np.testing.assert_array_equal(streamed, replayed.velocity)
 
