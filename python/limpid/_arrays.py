@@ -90,7 +90,7 @@ def as_floats(values: FloatLike, name: str, unit: str, *, nan: bool = False) -> 
     """Finite numbers; with ``nan``, also NaN."""
     array = one_dimensional(values, name)
     if array.dtype.kind not in "iuf":
-        dates = array.dtype.kind in "mM" and unit == "s"
+        dates = array.dtype.kind in "mM" and name == "t"
         example = f", for example ({name} - {name}[0]) / numpy.timedelta64(1, 's')" if dates else ""
         raise ValueError(f"{name}: has the type {array.dtype}; pass real numbers ({unit}){example}")
     array = np.require(array, dtype=np.float64, requirements=["C", "A"])

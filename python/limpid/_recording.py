@@ -91,6 +91,8 @@ class Recording:
             )
 
     def _check_columns(self) -> None:
+        if not isinstance(self.name, str):
+            raise TypeError(f"name: has the type {type(self.name).__name__}; pass a str")
         columns = _arrays.rows(self.counts, self.coupled, self.current, self.edge_age, self.edge_boundary)
         for name, column, unit in (
             ("true_velocity", self.true_velocity, "rad/s"),
@@ -103,8 +105,6 @@ class Recording:
         vars(self).update(columns)
 
     def _check_numbers(self) -> None:
-        if not isinstance(self.name, str):
-            raise TypeError(f"name: has the type {type(self.name).__name__}; pass a str")
         self.rate = _arrays.as_number(self.rate, "rate", "Hz")
         if self.counts_per_rev is not None:
             self.counts_per_rev = _limpid.checked_counts_per_rev(self.counts_per_rev)

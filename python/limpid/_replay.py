@@ -128,8 +128,13 @@ def replay(
         damping_ratio=damping_ratio,
         parameters=values,
         notes=notes,
-        _times=recording._t if times is None else np.asarray(times),
+        _times=_copied(recording._t) if times is None else np.asarray(times),
     )
+
+
+def _copied(times: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+    """Times that stay when those of the recording are changed."""
+    return None if times is None else times.copy()
 
 
 Columns = Mapping[str, str | int] | Sequence[str] | str

@@ -51,6 +51,10 @@ fn attributes(message: &str) -> String {
         ("no column true_omega", "no true_velocity"),
         ("rename the column for", "leave it out for"),
         ("shift the column", "shift it"),
+        (
+            "give the unit, columns=",
+            "convert it to rad/s, or read the log with columns=",
+        ),
     ];
     let text = (phrases.iter()).fold(message.to_owned(), |text, (column, attribute)| {
         text.replace(column, attribute)
@@ -75,7 +79,9 @@ fn attributes(message: &str) -> String {
 
 /// A message on the times of arrays, which have no unit that an option states.
 pub(crate) fn of_times(message: &str) -> String {
-    message.replace(", which --column t=NAME:ms states", ", and multiply it")
+    message
+        .replace(", which --column t=NAME:ms states", ", and multiply it")
+        .replace(", or state its unit with --column t=NAME:UNIT", "")
 }
 
 /// A message on recordings in memory: `recommend` and `tune` have no `resample`, and the reader of logs has it.

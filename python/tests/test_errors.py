@@ -52,6 +52,7 @@ def replay(**arguments):
         ({"rate": 10**400}, ["0: must be positive and finite (Hz)"]),
         ({"rate": None, "t": COUNTS[::-1] / 1000}, ["row 1: column t: 0.098 s is before the 0.099 s above it"]),
         ({"rate": None, "t": COUNTS.astype(float)}, ["1 Hz", "that it is not in ms, us or ns, and multiply it"]),
+        ({"rate": None, "t": COUNTS * 1e-9}, ["if it is in minutes, hours or days, multiply it"]),
         ({"rate": None, "t": 0.001}, ["t: has the type float; pass an array or a list"]),
         (
             {"rate": None, "t": COUNTS.astype("timedelta64[ms]")},
@@ -290,6 +291,7 @@ def test_every_type_error_names_the_argument():
         (lambda: limpid.tune(rate=1000, scenarios=5), "scenarios: has the type int; pass a name or names"),
         (lambda: limpid.read_log("log.csv", columns=None), "columns: has the type NoneType; pass a dict"),
         (lambda: limpid.read_log("log.csv", columns=[("t", "time")]), "columns: has the type tuple; pass a dict"),
+        (lambda: limpid.Recording(COUNTS, t=COUNTS / 1000, name=5), "name: has the type int; pass a str"),
         (lambda: limpid.Recording(COUNTS, 1000, name=5), "name: has the type int; pass a str"),
         (lambda: limpid.Recording(COUNTS, 1000, notes=5), "notes: has the type int; pass lines of text"),
     ):
@@ -305,7 +307,7 @@ def test_notes_on_recordings_name_their_attributes():
     for true, said in (
         (-velocity, "true_velocity is -1.000 times the velocity of counts, reverse the sign"),
         (0 * velocity, "true_velocity is 0, and counts moves: leave it out for scores against a reference"),
-        (velocity * 30 / np.pi, "as in rpm: give the unit, columns=true_omega=NAME:rpm"),
+        (velocity * 30 / np.pi, "as in rpm: convert it to rad/s, or read the log with columns=true_omega=NAME:rpm"),
     ):
         log = limpid.Recording(counts, 1000, true_velocity=true, counts_per_rev=4096, name="log")
         assert any(said in note for note in limpid.recommend(log).notes)

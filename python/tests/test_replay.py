@@ -199,6 +199,10 @@ def test_times_of_a_replay_stay_when_its_recording_changes():
     recording.counts = np.arange(10)
     recording.rate = 50
     np.testing.assert_array_equal(replayed.t, np.arange(3000) / 1000)
+    recording = limpid.Recording(np.arange(3000), t=np.arange(3000) / 1000)
+    replayed = limpid.replay(recording)
+    recording.t[:] = 0
+    np.testing.assert_array_equal(replayed.t, np.arange(3000) / 1000)
 
 
 def test_note_on_parameters_from_far_away_names_calls():

@@ -8,7 +8,7 @@ use std::process::{Command as Process, Output};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use common::Server;
 use common::devtools::Browser;
@@ -170,13 +170,22 @@ fn page_that_has_gone_disarms_the_board() {
     let server = Server::start(&["--board", &port, "--timeout", "60"]);
     let mut page = server.joined();
     page.lives = true;
-    // The order of the server, which found the board enabled, is past.
+    // The orders of the server, which found the board enabled, are past where none comes for half a second.
     page.status("disarmed", |status| status["mode"] == "boot");
+    let disarm = Command::Request(Request::Disarm);
+    let mut quiet = (0, Instant::now());
+    page.wait("no further order", |_, _| {
+        let commands = shared.commands.lock().expect("a list");
+        let orders = commands.iter().filter(|it| **it == disarm).count();
+        if orders != quiet.0 {
+            quiet = (orders, Instant::now());
+        }
+        (quiet.1.elapsed() > Duration::from_millis(500)).then_some(())
+    });
     shared.commands.lock().expect("a list").clear();
     drop(page);
     server.client().wait("an order to disarm", |_, _| {
         let commands = shared.commands.lock().expect("a list");
-        let disarm = Command::Request(Request::Disarm);
         commands.contains(&disarm).then_some(())
     });
 }

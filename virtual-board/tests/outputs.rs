@@ -4,7 +4,8 @@ use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
 use drivers::encode;
 use drivers::link::{Frame, Message, Parser};
@@ -50,6 +51,9 @@ fn runs_that_are_not_in_the_recording_are_told_by_the_exit_status() {
     }
     assert!(fs::read_to_string(&out).unwrap().lines().count() > 200);
 }
+
+/// Longest time without a byte of a board that is served.
+const LONGEST: Duration = Duration::from_secs(60);
 
 /// Exit status and standard error of a run with these arguments.
 fn ended(arguments: &[&str]) -> (Option<i32>, String) {
@@ -100,6 +104,17 @@ fn frames_until(client: &mut TcpStream, is_last: impl Fn(&Frame) -> bool) -> Vec
     frames
 }
 
+/// A program that ends with its test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// The program that serves the board neither arms it nor keeps it alive.
 #[test]
 fn served_board_gets_the_commands_of_its_client_alone() {
@@ -107,12 +122,13 @@ fn served_board_gets_the_commands_of_its_client_alone() {
     let mut board = Command::new(env!("CARGO_BIN_EXE_virtual-board"));
     let board = board.arg("--image").arg(Image::built());
     let board = board.args(["--link", "0", "--seconds", "60", "--hand", "none"]);
-    let mut board = board.stdout(Stdio::piped()).spawn().unwrap();
+    let mut board = Running(board.stdout(Stdio::piped()).spawn().unwrap());
     let mut line = String::new();
-    let mut out = BufReader::new(board.stdout.take().unwrap());
+    let mut out = BufReader::new(board.0.stdout.take().unwrap());
     out.read_line(&mut line).unwrap();
     let address = line.trim_end().rsplit_once(" tcp:").unwrap().1;
     let mut client = TcpStream::connect(address).unwrap();
+    client.set_read_timeout(Some(LONGEST)).unwrap();
     // A run without clients is armed at 0.1 s.
     let idle = frames_until(&mut client, |frame| frame.tick >= 2000);
     assert!(idle.iter().all(|frame| frame.state == Mode::Boot as u8));
@@ -127,8 +143,6 @@ fn served_board_gets_the_commands_of_its_client_alone() {
     // The scene ends without keep-alives long before its own end.
     let is_over = |frame: &Frame| frame.state != Mode::Running as u8;
     let last = *frames_until(&mut client, is_over).last().unwrap();
-    board.kill().unwrap();
-    board.wait().unwrap();
     let expected = (Mode::Armed as u8, Stop::CommandTimeout as u8);
     assert_eq!((last.state, last.cause), expected);
 }

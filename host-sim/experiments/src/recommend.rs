@@ -3,7 +3,6 @@
 mod table;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use serde::Serialize;
 
@@ -12,14 +11,14 @@ use catalogue::parameters::{Parameters, PlantKind};
 use device_files::six_digits;
 use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Row};
-use scoring::score::{SKIP_S, scored};
+use scoring::score::{SKIP_S, rms_scored};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::designed::{designed, with_friction};
 use crate::parallel::in_order;
 use crate::rates::{check_same, refuses};
-use crate::reference::{FEWEST_ROWS, Reference, Truth, interruptions};
+use crate::reference::{FEWEST_ROWS, Reference, remarks};
 use crate::replay;
 
 pub use table::{lines, reads, table};
@@ -182,14 +181,13 @@ pub fn recommend<'a>(
     }
     for outcome in &outcomes {
         let rate_hz = outcome.recording.trace.rate_hz;
-        let interrupted = interruptions(outcome.recording, outcome.reference.as_ref());
-        let mut truth = Truth::default();
-        truth.add(
+        let counts_per_rev = settings.device.stages.large.counts_per_rev;
+        let said = remarks(
             outcome.recording,
-            settings.device.stages.large.counts_per_rev,
+            outcome.reference.as_ref(),
+            counts_per_rev,
         );
-        let said = interrupted.into_iter().chain(truth.line());
-        notes.extend(said.map(|line| format!("{}: {line}", outcome.name)));
+        notes.extend((said.iter()).map(|line| format!("{}: {line}", outcome.name)));
         if let Some(reference) = &outcome.reference {
             let limits = reference.limits(rate_hz);
             notes.push(format!(
@@ -339,11 +337,7 @@ fn on_log(kind: &Kind, outcome: &Outcome) -> Option<OnLog> {
         delay_ms: row.score.delay_ms,
         sd_rad_s: estimate.deviation.as_ref().map(|sd| {
             let known = outcome.reference.as_ref().and_then(|r| r.known.as_deref());
-            let ranges = scored(sd.len(), rate_hz, known);
-            let rows: usize = ranges.iter().map(Range::len).sum();
-            let scored = ranges.into_iter().flat_map(|range| &sd[range]);
-            let squares: f64 = scored.map(|sd| f64::from(*sd).powi(2)).sum();
-            (squares / rows as f64).sqrt()
+            rms_scored(sd, rate_hz, known)
         }),
         against: if outcome.reference.is_some() {
             "reference"

@@ -29,13 +29,13 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use recordings::recording::Recording;
-use scoring::score::scored;
+use scoring::score::rms_scored;
 use simulation::trace::Trace;
 
 use crate::table::number;
 
 pub use sections::interruptions;
-pub use truth::Truth;
+pub use truth::TruthCheck;
 
 use sections::Motion;
 use sweeps::Model;
@@ -168,11 +168,7 @@ impl Reference {
     /// Root mean square of the standard deviation at the rows that are scored, rad/s.
     #[must_use]
     pub fn rms_sd(&self, rate_hz: f64) -> f64 {
-        let ranges = scored(self.sd.len(), rate_hz, self.known.as_deref());
-        let rows: usize = ranges.iter().map(Range::len).sum();
-        let scored = ranges.into_iter().flat_map(|range| &self.sd[range]);
-        let squares: f64 = scored.map(|sd| sd * sd).sum();
-        (squares / rows.max(1) as f64).sqrt()
+        rms_scored(&self.sd, rate_hz, self.known.as_deref())
     }
 
     /// Makes `rows` of the reference the velocity against which `trace`, which has these rows, is scored.
@@ -247,6 +243,20 @@ impl Noises {
             sensor: model.sensor,
         })
     }
+}
+
+/// Lines on what decides a ranking without being an error of an estimator, for a recording whose scores are against
+/// `reference`, or against its true velocity: rows that are no motion, and a truth that is not that of the counts.
+#[must_use]
+pub fn remarks(
+    recording: &Recording,
+    reference: Option<&Reference>,
+    counts_per_rev: u32,
+) -> Vec<String> {
+    let mut truth = TruthCheck::default();
+    truth.add(recording, counts_per_rev);
+    let interrupted = interruptions(recording, reference).into_iter();
+    interrupted.chain(truth.line()).collect()
 }
 
 #[cfg(test)]

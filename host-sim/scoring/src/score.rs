@@ -19,7 +19,7 @@ mod truth;
 
 pub use field::{Better, Field, Form, Over};
 pub use fields::{Score, Wanted};
-pub use scored::{scored, skipped};
+pub use scored::{rms_scored, scored, skipped};
 pub use sections::Sections;
 pub use transient::HALF_SPAN_S;
 pub use truth::{Truth, is_within_2_sigma};

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use experiments::reference::Truth;
+use experiments::reference::TruthCheck;
 use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
@@ -117,7 +117,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let mut passes = Passes {
         parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
         summary: BoardSummary::default(),
-        truth: Truth::default(),
+        truth: TruthCheck::default(),
         counts_per_rev: device.stages.large.counts_per_rev,
         bar: progress(
             rows.div_ceil(section_rows(rows)) * run.estimates.len(),

@@ -66,7 +66,7 @@ const LEAST_KNOWN: f64 = 0.5;
 
 /// Whether an estimate is scored at each of `rows` at `rate_hz`: not at a row that is no motion of a shaft or that
 /// follows a long gap, nor within [`SKIP_S`] after it, as estimators do not know such rows and begin anew. `None` if
-/// it is scored at all of them: there is no such row, or less than [`LEAST_KNOWN`] of the rows would be left.
+/// it is scored at all of them: there is no such row, or less than [`LEAST_KNOWN`] of the scored rows would be left.
 pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
     let passed = skipped(rate_hz).max(1);
     let mut since = passed;
@@ -78,8 +78,9 @@ pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
         since >= passed
     };
     let known: Vec<_> = rows.iter().map(is_known).collect();
-    let number = known.iter().filter(|known| **known).count();
-    let is_part = number < rows.len() && number as f64 >= LEAST_KNOWN * rows.len() as f64;
+    let scored = known.get(skipped(rate_hz)..).unwrap_or_default();
+    let number = scored.iter().filter(|known| **known).count();
+    let is_part = number < scored.len() && number as f64 >= LEAST_KNOWN * scored.len() as f64;
     is_part.then_some(known)
 }
 
@@ -99,13 +100,14 @@ pub fn interruptions(recording: &Recording, reference: Option<&Reference>) -> Op
         (Row::Resumed, "has a long gap before", "cut the log there"),
     ];
     let said = remedies.iter().filter_map(|(kind, what, remedy)| {
-        let of_kind = rows
-            .iter()
-            .zip(&recording.t)
-            .filter(|(row, _)| *row == kind);
-        let times: Vec<_> = of_kind.map(|(_, t)| shown(*t)).collect();
-        let listed = times[..times.len().min(LISTED)].join(", ");
-        let more = match times.len().saturating_sub(LISTED) {
+        let of_kind = || {
+            rows.iter()
+                .zip(&recording.t)
+                .filter(|(row, _)| *row == kind)
+        };
+        let times: Vec<_> = of_kind().take(LISTED).map(|(_, t)| shown(*t)).collect();
+        let listed = times.join(", ");
+        let more = match of_kind().skip(LISTED).count() {
             0 => String::new(),
             1 => " and at 1 row more".to_owned(),
             more => format!(" and at {more} rows more"),
@@ -146,7 +148,7 @@ pub(super) fn rows(recording: &Recording) -> Vec<Row> {
         let is_last = k + 1 == rows;
         if recording.t[k] - recording.t[k - 1] > LONGEST * period {
             *kind = Row::Resumed;
-            (last, before) = (k, step);
+            (last, before) = (k, 0.0);
         } else if !jumps(step, before) {
             (last, before) = (k, step);
         } else if is_last || jumps(speed(k, k + 1), before) && !jumps(speed(last, k + 1), before) {
@@ -326,9 +328,11 @@ mod tests {
             unknown(&[7, 8, 38]),
             Some(vec![7, 8, 9, 10, 11, 12, 38, 39])
         );
-        // Of 40 rows 20 are left, and 19.
-        assert_eq!(unknown(&[0, 5, 10, 15]).map(|rows| rows.len()), Some(20));
-        assert_eq!(unknown(&[0, 5, 10, 15, 39]), None);
+        // Rows that are not scored anyway.
+        assert_eq!(unknown(&[0]), None);
+        // Of 35 scored rows 18 are left, and 17.
+        assert_eq!(unknown(&[5, 10, 15, 38]).map(|rows| rows.len()), Some(17));
+        assert_eq!(unknown(&[5, 10, 15, 37]), None);
     }
 
     #[test]

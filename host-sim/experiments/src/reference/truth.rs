@@ -9,12 +9,12 @@ use std::f64::consts::{PI, TAU};
 use recordings::recording::Recording;
 use scoring::score::skipped;
 
-use super::sections::{LONGEST, Row, rows};
+use super::sections::{Row, rows};
 use crate::table::number;
 
 /// Least ratio of the displacements' mean square to that of quantisation, for a statement on them: they are then known
 /// to a tenth.
-const RESOLVED: f64 = 100.0;
+const KNOWN_TO_A_TENTH: f64 = 100.0;
 
 /// Fewest blocks, and fewest rows at which the count changes, for a statement.
 const FEWEST: usize = 10;
@@ -40,7 +40,7 @@ const DIFFERENCE: f64 = 0.05;
 
 /// Sums over the blocks of a recording.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Truth {
+pub struct TruthCheck {
     blocks: usize,
     /// Squares and products of the displacement of the counts, rad, that of the velocity, rad, and the change of the
     /// velocity, rad/s.
@@ -49,11 +49,13 @@ pub struct Truth {
     /// to the row before, and from half of that between the rows before and after, counts.
     changes: usize,
     deviations: [f64; 2],
+    /// The least and the largest of these changes, counts.
+    steps: Option<[f64; 2]>,
     quantum_rad: f64,
     period_s: f64,
 }
 
-impl Truth {
+impl TruthCheck {
     /// Adds the rows of `recording`, whose encoder has `counts_per_rev`, if it has a true velocity.
     pub fn add(&mut self, recording: &Recording, counts_per_rev: u32) {
         let trace = &recording.trace;
@@ -67,11 +69,11 @@ impl Truth {
         let step = |k: usize| f64::from(counts[k].wrapping_sub(counts[k - 1]) as i32);
         let since = |k: usize| t[k] - t[k - 1];
         let kinds = rows(recording);
-        let is_motion = |k: usize| {
-            kinds[k] == Row::Next && kinds[k - 1] != Row::Bad && since(k) <= LONGEST * self.period_s
-        };
+        let is_motion = |k: usize| kinds[k] == Row::Next && kinds[k - 1] != Row::Bad;
         let is_change = |k: &usize| step(*k) != 0.0 && is_motion(*k) && is_motion(*k + 1);
         for k in (1..t.len().saturating_sub(1)).filter(is_change) {
+            let [least, largest] = self.steps.unwrap_or([step(k); 2]);
+            self.steps = Some([least.min(step(k)), largest.max(step(k))]);
             let moved = omega[k] * since(k) / quantum;
             let central = 0.5 * (step(k) + step(k + 1));
             self.changes += 1;
@@ -107,7 +109,7 @@ impl Truth {
     pub fn line(&self) -> Option<String> {
         let [[dd, dt, dw], [_, tt, tw], [_, _, ww]] = self.sums;
         let quantisation = self.blocks as f64 * self.quantum_rad.powi(2) / 6.0;
-        if self.blocks < FEWEST || dd.is_nan() || dd < RESOLVED * quantisation {
+        if self.blocks < FEWEST || dd.is_nan() || dd < KNOWN_TO_A_TENTH * quantisation {
             return None;
         }
         let rename = "rename the column for scores against a reference";
@@ -151,11 +153,13 @@ impl Truth {
 
     /// What is said of a velocity that is computed from the counts.
     fn difference(&self) -> Option<&'static str> {
-        if self.changes < FEWEST {
+        // Where all rows are the same number of counts apart, as in a computed log, the true velocity is that too.
+        let is_even = self.steps.is_none_or(|[least, largest]| least == largest);
+        if self.changes < FEWEST || is_even {
             return None;
         }
         let said = [
-            "true_omega is finite difference of counts_large",
+            "true_omega is the finite difference of counts_large",
             "true_omega is the central difference of counts_large, which is half a period from finite difference",
         ];
         let largest = self.changes as f64 * DIFFERENCE.powi(2);
@@ -185,7 +189,7 @@ impl Truth {
         });
         let is_reversed = ratio < 0.0;
         let of_size = of_unit.or_else(|| {
-            ((ratio.abs() - 1.0).abs() > GAIN).then(|| {
+            (!is_reversed || (ratio.abs() - 1.0).abs() > GAIN).then(|| {
                 let counts = TAU / self.quantum_rad * gain.abs();
                 format!(
                     "as with {} counts/rev: check --counts-per-rev and the unit",
@@ -230,7 +234,7 @@ mod tests {
     }
 
     fn line(recording: &Recording, counts_per_rev: u32) -> String {
-        let mut truth = Truth::default();
+        let mut truth = TruthCheck::default();
         truth.add(recording, counts_per_rev);
         truth.line().unwrap_or_default()
     }
@@ -264,6 +268,7 @@ mod tests {
                 "as in rpm: give the unit, --column true_omega=NAME:rpm; reverse the sign",
             ),
             (4.0, 0.0, "as with 1024 counts/rev"),
+            (0.905, 0.0, "as with 4526 counts/rev"),
             (1.0, 15.0, "ms behind counts_large"),
             (1.0, -15.0, "ms ahead of counts_large"),
             (0.0, 0.0, "true_omega is 0, and counts_large moves"),
@@ -295,7 +300,7 @@ mod tests {
         for (omega, said) in [
             (
                 before,
-                "is finite difference of counts_large, which has no error against it",
+                "is the finite difference of counts_large, which has no error against it",
             ),
             (central, "is the central difference of counts_large"),
         ] {
@@ -303,6 +308,10 @@ mod tests {
             let line = line(&log, 4096);
             assert!(line.contains(said), "{line}");
         }
+        // Three counts in each row.
+        log.trace.counts_large = (0..10_000).map(|k| 3 * k).collect();
+        log.trace.true_omega = Some(vec![3.0 * scale; 10_000]);
+        assert_eq!(line(&log, 4096), "");
     }
 
     #[test]
@@ -315,7 +324,7 @@ mod tests {
         log.t[7000..].iter_mut().for_each(|t| *t += 100.0);
         assert_eq!(line(&log, 4096), "");
         // The sections of a long log.
-        let mut truth = Truth::default();
+        let mut truth = TruthCheck::default();
         for number in [4000, 10, 6000] {
             truth.add(&log.split_front(number), 1024);
         }

@@ -23,7 +23,8 @@ pub fn section_rows(rows: usize) -> usize {
 
 /// A run of several estimators over the sections of one recording.
 pub struct Run {
-    /// The rows of the latest section: the last [`SKIP_S`](scoring::score::SKIP_S) of the section before it, and its own.
+    /// The rows of the latest section: the last [`SKIP_S`](scoring::score::SKIP_S) of the section before it, and its
+    /// own.
     pub section: Recording,
     /// Number of rows of the section before it.
     pub before: usize,

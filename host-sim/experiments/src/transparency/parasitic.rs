@@ -48,7 +48,8 @@ impl Fingertip {
 }
 
 score_fields! {
-    /// Scores of a parasitic force after the first [`SKIP_S`](scoring::score::SKIP_S) seconds; `None` for a shorter series.
+    /// Scores of a parasitic force after the first [`SKIP_S`](scoring::score::SKIP_S) seconds; `None` for a shorter
+    /// series.
     /// A force that is not finite counts as infinite.
     pub struct Parasitic {
         /// Root mean square, mN.

@@ -14,7 +14,7 @@ use shards::Experiment;
 
 use super::search::{best_values, ends_of_ranges};
 use crate::rates::check_same;
-use crate::reference::{Reference, Truth, interruptions};
+use crate::reference::{Reference, remarks};
 use crate::table::number;
 use catalogue::estimators::{Kind, Lack, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
@@ -266,11 +266,11 @@ fn track(
             Ok(reference) => Some(reference),
         },
     };
-    let interrupted = interruptions(&recording, reference.as_ref());
-    let mut truth = Truth::default();
-    truth.add(&recording, device.stages.large.counts_per_rev);
-    let said = interrupted.into_iter().chain(truth.line());
-    let mut notes: Vec<_> = said.map(|line| format!("{name}: {line}")).collect();
+    let counts_per_rev = device.stages.large.counts_per_rev;
+    let said = remarks(&recording, reference.as_ref(), counts_per_rev);
+    let mut notes: Vec<_> = (said.iter())
+        .map(|line| format!("{name}: {line}"))
+        .collect();
     if let Some(reference) = reference {
         notes.push(format!(
             "{name}: no column true_omega; errors are those against a smoother of the log itself, whose own \

@@ -41,7 +41,8 @@ pub(super) fn mean_rate(steps: u64, duration_s: f64) -> Option<f64> {
 /// Largest distance, in mean steps, by which a time goes back where two rows have changed places.
 const SWAPPED: f64 = 1.5;
 
-/// Error for a row at `t` below one at `last`, s. `first` is the first time of the log, of which `taken` rows are above.
+/// Error for a row at `t` below one at `last`, s. `first` is the first time of the log, of which `taken` rows are
+/// above.
 pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2], taken: usize) -> Failure {
     let back = last - t;
     let steps = back * taken.saturating_sub(1) as f64 / (last - first);

@@ -31,10 +31,20 @@ pub fn scored(samples: usize, rate_hz: f64, known: Option<&[bool]>) -> Vec<Range
     ranges
 }
 
+/// Root mean square of those of `values` at `rate_hz` that are scored, as [`scored`]; 0 if there are none.
+#[must_use]
+pub fn rms_scored<T: Copy + Into<f64>>(values: &[T], rate_hz: f64, known: Option<&[bool]>) -> f64 {
+    let ranges = scored(values.len(), rate_hz, known);
+    let samples: usize = ranges.iter().map(Range::len).sum();
+    let scored = ranges.into_iter().flat_map(|range| &values[range]);
+    let squares: f64 = scored.map(|value| (*value).into().powi(2)).sum();
+    (squares / samples.max(1) as f64).sqrt()
+}
+
 #[cfg(test)]
 #[expect(clippy::single_range_in_vec_init, reason = "one range is meant")]
 mod tests {
-    use super::scored;
+    use super::{rms_scored, scored};
 
     #[test]
     fn samples_after_the_start_at_which_the_truth_is_known_are_scored() {
@@ -56,5 +66,16 @@ mod tests {
             );
         }
         assert_eq!(scored(30, 100.0, Some(&[false; 30])), []);
+    }
+
+    #[test]
+    fn root_mean_square_is_that_of_the_scored_values() {
+        let values: Vec<f32> = (0..30).map(|k| if k < 15 { 9.0 } else { 4.0 }).collect();
+        let known: Vec<_> = (0..30).map(|k| k >= 14).collect();
+        assert_eq!(
+            rms_scored(&values, 100.0, Some(&known[..])),
+            ((81.0 + 15.0 * 16.0) / 16.0_f64).sqrt()
+        );
+        assert_eq!(rms_scored(&values[..5], 100.0, None), 0.0);
     }
 }

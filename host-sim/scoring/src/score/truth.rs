@@ -108,10 +108,10 @@ impl<'a> Truth<'a> {
         self.scored
     }
 
-    /// Sum of the squared differences of neighbouring samples, (rad/s)^2.
+    /// Sum of the squared differences of neighbouring scored samples, (rad/s)^2.
     pub(super) fn slope(&self) -> f64 {
-        let differences = self.omega.windows(2).map(|pair| pair[1] - pair[0]);
-        differences.map(|difference| difference * difference).sum()
+        let steps = neighbours(self.omega, &self.ranges);
+        steps.map(|(before, after)| (after - before).powi(2)).sum()
     }
 
     /// The errors of an estimate in the samples that are scored, rad/s.
@@ -130,6 +130,9 @@ impl<'a> Truth<'a> {
     /// If `estimate`, `deviation` and the truth differ in length.
     #[must_use]
     pub fn within_2_sigma(&self, estimate: &[f32], deviation: &[f32]) -> Option<f64> {
+        for samples in [estimate.len(), deviation.len()] {
+            assert_eq!(samples, self.omega.len(), "one value per sample");
+        }
         let inside = |k: &usize| is_within_2_sigma(estimate[*k], deviation[*k], self.omega[*k]);
         let samples = self.ranges.iter().cloned().flatten();
         let inside = samples.filter(inside).count();
@@ -245,13 +248,22 @@ impl<'a> Truth<'a> {
         (n > 0).then(|| sum / n as f64)
     }
 
-    /// The spectrum needs all samples: an unknown error is 0, and the mean is that of the scored ones.
+    /// The spectrum needs samples without gaps. An unknown error is on the line from the last one before to the first
+    /// one after it, which has next to no power in the band, and the mean square is that of the scored samples.
     fn noise(&self, estimate: &[f32]) -> Option<f64> {
         let welch = self.welch.as_ref()?;
-        let mut errors = vec![0.0; self.omega.len() - self.skip];
-        let samples = self.ranges.iter().cloned().flatten();
-        for (k, error) in samples.zip(self.errors(estimate)) {
-            errors[k - self.skip] = error;
+        let end = self.ranges.last()?.end;
+        let mut errors = Vec::with_capacity(end - self.skip);
+        let mut known = self.errors(estimate);
+        for range in &self.ranges {
+            let mut within = known.by_ref().take(range.len());
+            let first = within.next()?;
+            let last = errors.last().copied().unwrap_or(first);
+            let unknown = range.start - self.skip - errors.len();
+            let part = |k: usize| k as f64 / (unknown + 1) as f64;
+            errors.extend((1..=unknown).map(|k| last + part(k) * (first - last)));
+            errors.push(first);
+            errors.extend(within);
         }
         let share = self.scored as f64 / errors.len() as f64;
         let rms = welch.density(&errors)?.rms_within(TACTILE_BAND_HZ)?;

@@ -356,3 +356,14 @@ fn common_samples_of_ranges_are_in_both() {
     assert_eq!(common(&some, &[]), []);
     assert_eq!(common(&[], &some), []);
 }
+
+/// The ends of what is not known are no noise.
+#[test]
+fn slow_error_between_unknown_samples_has_no_noise() {
+    let n = 30_000;
+    let truth = vec![0.0; n];
+    let slow = estimate(n, |t| (TAU * 0.5 * t).sin());
+    let known: Vec<_> = (0..n).map(|k| k % 300 > 100).collect();
+    let truth = Truth::where_known(&truth, Some(&known), RATE_HZ, interval(), Wanted::ALL).unwrap();
+    near(truth.score(&slow).noise_rad_s, 0.0, 3e-3);
+}

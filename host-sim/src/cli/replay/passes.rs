@@ -4,7 +4,7 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use experiments::reference::{Reference, Truth};
+use experiments::reference::{Reference, TruthCheck};
 use experiments::replay::{self, BoardSummary, Run};
 use indicatif::ProgressBar;
 use recordings::recording::Parts;
@@ -16,7 +16,7 @@ pub(super) struct Passes<'a> {
     pub(super) parts: Parts<'a>,
     pub(super) summary: BoardSummary,
     /// Whether the true velocity is that of the counts.
-    pub(super) truth: Truth,
+    pub(super) truth: TruthCheck,
     pub(super) counts_per_rev: u32,
     pub(super) bar: ProgressBar,
     /// Rows of a section.

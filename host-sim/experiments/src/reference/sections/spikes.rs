@@ -2,17 +2,21 @@
 
 use recordings::recording::Recording;
 
-use super::{JUMP, Row, signed};
+use super::{Row, signed};
 
 /// A single count is bad too if it is this number of times farther from the line through the counts beside it than
-/// [`CLOSE`] of all, and than [`JUMP`] counts, and farther than the shaft moves in a row: no shaft leaves its course
+/// [`CLOSE`] of all, and than [`COUNTS`], and farther than the shaft moves in a row: no shaft leaves its course
 /// for one row, and a row that was read late by less than a period is as far from it as it moves.
 const SPIKE: f64 = 10.0;
+
+/// Smallest distance of a bad count from the line, counts: that of one beside counts that rest.
+const COUNTS: f64 = 30.0;
 
 /// Share of the rows that are close to the line through the rows beside them.
 const CLOSE: f64 = 0.98;
 
-/// Marks single counts that are far from the line through those beside them.
+/// Marks single counts that are far from the line through those beside them. The first and the last two rows have no
+/// such line, or one of their neighbours has none.
 pub(super) fn mark(recording: &Recording, kinds: &mut [Row]) {
     // Distance from the line, counts; 0 where a row beside is no part of the motion.
     let from_line = |k: usize| {
@@ -31,7 +35,7 @@ pub(super) fn mark(recording: &Recording, kinds: &mut [Row]) {
         return;
     };
     let close = *sizes.select_nth_unstable_by(close, f64::total_cmp).1;
-    let bound = (SPIKE * close).max(JUMP);
+    let bound = (SPIKE * close).max(COUNTS);
     for k in 2..kinds.len().saturating_sub(2) {
         let at = distances[k];
         // A bad count has half of its distance, with the other sign, on both sides; a jump has its own on one side.

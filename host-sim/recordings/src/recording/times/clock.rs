@@ -95,7 +95,7 @@ pub(crate) fn fast(rate_hz: f64) -> Option<String> {
     })
 }
 
-/// Longest gap over which a motion is followed, periods.
+/// Longest gap over which a motion is followed, periods. One row less is missing in it.
 pub const LONGEST_GAP: f64 = 200.0;
 
 /// Gaps of `t` in which rows are missing.
@@ -136,7 +136,7 @@ impl Gaps {
             number, rows, most, ..
         } = self;
         let are_late = *most == 1.0 && self.excess < rows / 2.0;
-        let remedy = match *most > LONGEST_GAP {
+        let remedy = match *most >= LONGEST_GAP {
             true => format!(
                 "; cut the log before t = {} s: resampled rows in this gap are a straight line",
                 shown(self.end)
@@ -266,10 +266,10 @@ mod tests {
             gaps.note().unwrap()
         };
         let short =
-            "204 rows are missing in 3 gaps of at most 200, the first before line 7 at 0.5 s";
-        assert_eq!(note(200), short);
-        let cut = "at 0.5 s; cut the log before t = 1.202 s: resampled rows in this gap are a straight line";
-        assert!(note(201).ends_with(cut), "{}", note(201));
+            "203 rows are missing in 3 gaps of at most 199, the first before line 7 at 0.5 s";
+        assert_eq!(note(199), short);
+        let cut = "at 0.5 s; cut the log before t = 1.201 s: resampled rows in this gap are a straight line";
+        assert!(note(200).ends_with(cut), "{}", note(200));
         let mut one = Gaps::default();
         one.add(2e-3, 1000.0, 0.5, || 7);
         assert_eq!(

@@ -149,8 +149,8 @@ impl Steps {
         if rate_hz > FASTEST_HZ {
             return Err(Failure::Input(format!(
                 "{name}: column t: rows {} s apart are {rate_hz} Hz, which is above {FASTEST_HZ} Hz; t must be in \
-                 seconds, check that it is not in minutes, hours or days, and multiply it, or that --column t=NAME:UNIT \
-                 states its unit",
+                 seconds: if it is in minutes, hours or days, multiply it, or state its unit with --column \
+                 t=NAME:UNIT",
                 shown(to_digits(period, 7))
             )));
         }
