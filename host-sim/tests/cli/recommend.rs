@@ -119,7 +119,7 @@ fn truth_that_does_not_fit_the_counts_is_named() {
         assert!(!said.contains("times the velocity"), "{said}");
         let said = notes(&["step.csv"]);
         assert!(
-            said.contains("is finite difference of counts_large"),
+            said.contains("is the finite difference of counts_large"),
             "{said}"
         );
     }
