@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use common::Server;
 use common::devtools::Browser;
+use common::{Client, Server};
 use drive::port::TAKEN;
 use drivers::link::{Frame, Hello, LONGEST, Message, PROTOCOL};
 use drivers::{Command, NO_ESTIMATOR, Parser};
@@ -132,51 +132,54 @@ fn play(mut stream: TcpStream, shared: &Shared) {
     }
 }
 
-#[test]
-fn board_that_runs_a_scene_already_is_disarmed() {
+const DISARM: Command = Command::Request(Request::Disarm);
+
+/// A board that is played, and its server.
+fn served(obeys: bool) -> (Arc<Shared>, Server) {
     let (shared, port) = played(Shared {
-        obeys: true,
+        obeys,
         ..Shared::default()
     });
     let server = Server::start(&["--board", &port, "--timeout", "60"]);
+    (shared, server)
+}
+
+/// The same with a page that commands it, after the server has disarmed it.
+fn disarmed() -> (Arc<Shared>, Server, Client) {
+    let (shared, server) = served(true);
     let mut page = server.joined();
     page.lives = true;
     page.status("disarmed", |status| status["mode"] == "boot");
+    (shared, server, page)
+}
+
+#[test]
+fn board_that_runs_a_scene_already_is_disarmed() {
+    let (shared, ..) = disarmed();
     let commands = shared.commands.lock().expect("a list");
-    let disarm = Command::Request(Request::Disarm);
     let others = commands.iter().find(|it| **it != Command::Identify);
-    assert_eq!(others, Some(&disarm), "{commands:?}");
+    assert_eq!(others, Some(&DISARM), "{commands:?}");
 }
 
 /// The first order may be lost on its way.
 #[test]
 fn board_that_stays_enabled_is_disarmed_again() {
-    let (shared, port) = played(Shared::default());
-    let server = Server::start(&["--board", &port, "--timeout", "60"]);
-    let disarm = Command::Request(Request::Disarm);
+    let (shared, server) = served(false);
     server.client().wait("orders to disarm", |_, _| {
         let commands = shared.commands.lock().expect("a list");
-        let orders = commands.iter().filter(|it| **it == disarm);
+        let orders = commands.iter().filter(|it| **it == DISARM);
         (orders.count() >= 3).then_some(())
     });
 }
 
 #[test]
 fn page_that_has_gone_disarms_the_board() {
-    let (shared, port) = played(Shared {
-        obeys: true,
-        ..Shared::default()
-    });
-    let server = Server::start(&["--board", &port, "--timeout", "60"]);
-    let mut page = server.joined();
-    page.lives = true;
+    let (shared, server, mut page) = disarmed();
     // The orders of the server, which found the board enabled, are past where none comes for half a second.
-    page.status("disarmed", |status| status["mode"] == "boot");
-    let disarm = Command::Request(Request::Disarm);
     let mut quiet = (0, Instant::now());
     page.wait("no further order", |_, _| {
         let commands = shared.commands.lock().expect("a list");
-        let orders = commands.iter().filter(|it| **it == disarm).count();
+        let orders = commands.iter().filter(|it| **it == DISARM).count();
         if orders != quiet.0 {
             quiet = (orders, Instant::now());
         }
@@ -186,18 +189,14 @@ fn page_that_has_gone_disarms_the_board() {
     drop(page);
     server.client().wait("an order to disarm", |_, _| {
         let commands = shared.commands.lock().expect("a list");
-        commands.contains(&disarm).then_some(())
+        commands.contains(&DISARM).then_some(())
     });
 }
 
 /// Its messages would be misunderstood.
 #[test]
 fn board_that_is_given_an_image_of_another_protocol_ends_the_server() {
-    let (shared, port) = played(Shared {
-        obeys: true,
-        ..Shared::default()
-    });
-    let mut server = Server::start(&["--board", &port, "--timeout", "60"]);
+    let (shared, mut server) = served(true);
     let mut page = server.client();
     page.status("frames", |status| !status["mode"].is_null());
     shared.is_updated.store(true, Ordering::Relaxed);

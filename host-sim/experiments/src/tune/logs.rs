@@ -44,8 +44,8 @@ pub struct LogPlan {
     device: Device,
     searches: Vec<LogSearch>,
     notes: Vec<String>,
-    #[serde(skip)]
     /// The recordings, with a velocity that estimates are compared with.
+    #[serde(skip)]
     tracks: Vec<Trace>,
 }
 
