@@ -263,7 +263,8 @@ fn board_that_falls_silent_is_told_and_gets_no_command_but_disarm() {
     shared.is_frozen.store(false, Ordering::Relaxed);
     page.status("it sends again", |status| status["silent"].is_null());
     shared.is_frozen.store(true, Ordering::Relaxed);
-    // The disarm is not confirmed.
+    // No frame of a disarmed board is on its way any more: the disarm is not confirmed.
+    page.status("a silence again", |status| !status["silent"].is_null());
     assert!(!server.interrupt());
 }
 
