@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use recordings::recording::Recording;
+use recordings::recording::{LONGEST_GAP, Recording};
 
-use super::sections::{LONGEST, Row};
+use super::sections::Row;
 
 /// What was observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +72,7 @@ pub(super) fn events(
         events: Vec::with_capacity(range.len()),
         last: None,
         period_s,
-        longest_s: LONGEST * trace.period_s(),
+        longest_s: LONGEST_GAP * trace.period_s(),
     };
     // A range that begins with a bad count is from the first other one on: nothing is known of the motion between.
     let first = range.clone().find(|k| rows[*k] != Row::Bad);

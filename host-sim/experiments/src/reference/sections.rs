@@ -1,6 +1,6 @@
 //! Where the motion of a recording is lost: long gaps, jumps of the counter and single bad counts.
 //!
-//! After a gap of more than [`LONGEST`] periods little of the motion before it is known, and the
+//! After a gap of more than [`LONGEST_GAP`] periods little of the motion before it is known, and the
 //! variances of the smoother are too far apart for its arithmetic. A jump of the counter is no motion.
 //! The smoother starts anew after both: rows before and after do not depend on each other. It passes
 //! over a single bad count.
@@ -10,9 +10,6 @@ mod spikes;
 use super::Reference;
 use recordings::recording::{LONGEST_GAP, Recording, shown};
 use scoring::score::{SKIP_S, skipped};
-
-/// Longest interval over which the motion is followed, periods.
-pub(super) const LONGEST: f64 = LONGEST_GAP;
 
 /// A displacement is no motion if it is this number of times larger than the displacements beside it,
 /// plus one count, and than [`USUAL`] of all. An impact has large displacements beside it, and a count
@@ -36,7 +33,7 @@ pub(super) enum Row {
     Next,
     /// It begins another motion: the counter has jumped.
     Jumped,
-    /// It begins another motion: a gap of more than [`LONGEST`] periods is before it.
+    /// It begins another motion: a gap of more than [`LONGEST_GAP`] periods is before it.
     Resumed,
     /// Nothing: its count is bad.
     Bad,
@@ -146,7 +143,7 @@ pub(super) fn rows(recording: &Recording) -> Vec<Row> {
     for (k, kind) in kinds.iter_mut().enumerate().skip(1) {
         let step = speed(last, k);
         let is_last = k + 1 == rows;
-        if recording.t[k] - recording.t[k - 1] > LONGEST * period {
+        if recording.t[k] - recording.t[k - 1] > LONGEST_GAP * period {
             *kind = Row::Resumed;
             (last, before) = (k, 0.0);
         } else if !jumps(step, before) {

@@ -4,20 +4,25 @@ use recordings::recording::Recording;
 
 use super::{Row, signed};
 
-/// A single count is bad too if it is this number of times farther from the line through the counts beside it than
-/// [`CLOSE`] of all, and than [`COUNTS`], and farther than the shaft moves in a row: no shaft leaves its course
-/// for one row, and a row that was read late by less than a period is as far from it as it moves.
+/// A bad count is this number of times farther from the line than the share [`CLOSE`] of all counts.
 const SPIKE: f64 = 10.0;
+
+/// Share of the counts whose distance from the line is usual.
+const CLOSE: f64 = 0.98;
 
 /// Smallest distance of a bad count from the line, counts: that of one beside counts that rest.
 const COUNTS: f64 = 30.0;
 
-/// Share of the rows that are close to the line through the rows beside them.
-const CLOSE: f64 = 0.98;
+/// Fewest rows of which one has a line, and both rows beside it have one.
+const FEWEST: usize = 5;
 
-/// Marks single counts that are far from the line through those beside them. The first and the last two rows have no
-/// such line, or one of their neighbours has none.
+/// Marks single counts that are far from the line through the two beside them, which a shaft does not leave for one row.
+/// A count that was read late by less than a period is as far from it as the shaft moves in a row: a bad one is farther.
+/// The first and the last two rows are not marked.
 pub(super) fn mark(recording: &Recording, kinds: &mut [Row]) {
+    if kinds.len() < FEWEST {
+        return;
+    }
     // Distance from the line, counts; 0 where a row beside is no part of the motion.
     let from_line = |k: usize| {
         if k == 0 || k + 1 >= kinds.len() || kinds[k - 1..=k + 1] != [Row::Next; 3] {
@@ -31,12 +36,9 @@ pub(super) fn mark(recording: &Recording, kinds: &mut [Row]) {
     let distances: Vec<f64> = (0..kinds.len()).map(from_line).collect();
     let mut sizes: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
     let close = (sizes.len() as f64 * CLOSE) as usize;
-    let Some(close) = sizes.get(close).map(|_| close) else {
-        return;
-    };
     let close = *sizes.select_nth_unstable_by(close, f64::total_cmp).1;
     let bound = (SPIKE * close).max(COUNTS);
-    for k in 2..kinds.len().saturating_sub(2) {
+    for k in 2..kinds.len() - 2 {
         let at = distances[k];
         // A bad count has half of its distance, with the other sign, on both sides; a jump has its own on one side.
         let is_alone = [k - 1, k + 1].into_iter().all(|beside| {
@@ -102,5 +104,8 @@ mod tests {
         };
         assert_eq!(marked(&noisy(60)), []);
         assert_eq!(marked(&noisy(300)), [(500, Row::Bad)]);
+        for rows in 0..8 {
+            assert_eq!(marked(&(0..rows).collect::<Vec<_>>()), []);
+        }
     }
 }

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector, Matrix3, RowVector3};
 
-use super::super::sections::LONGEST;
 use super::*;
+use recordings::recording::LONGEST_GAP;
 
 /// Rows and edges at uneven instants, of a position that goes forward and back.
 fn trace() -> Vec<Event> {
@@ -165,7 +165,7 @@ fn variances_are_positive_at_all_noises_speeds_and_intervals() {
     let sensors = [1e-6, 1e-4, 0.02, 1.0];
     let jerks = [-37.0, -27.0, -15.0, -5.0, 0.0, 7.0].map(f64::exp);
     for speed in [0.3, 8.0, 200.0, 1e5] {
-        for gap in [1.0, 10.0, LONGEST] {
+        for gap in [1.0, 10.0, LONGEST_GAP] {
             let events = constant(speed, gap);
             for (sensor, jerk) in sensors.iter().flat_map(|s| jerks.map(|jerk| (*s, jerk))) {
                 let model = Model {
