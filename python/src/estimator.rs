@@ -324,9 +324,10 @@ impl Estimator {
     }
 
     fn __repr__(&self) -> String {
+        let varying = if self.varying { ", varying=True" } else { "" };
         format!(
-            "limpid.Estimator('{}', rate={}, counts_per_rev={})",
-            self.kind.name, self.rate_hz, self.counts_per_rev
+            "limpid.Estimator('{}', rate={}, counts_per_rev={}{}{varying})",
+            self.kind.name, self.rate_hz, self.counts_per_rev, self.moduli
         )
     }
 }

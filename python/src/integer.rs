@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use simulation::device::COUNTS_PER_REV;
+use simulation::device::parsed_counts_per_rev;
 
 use crate::error::value_error;
 
@@ -30,6 +30,22 @@ impl<'py> FromPyObject<'_, 'py> for Integer {
 }
 
 impl Integer {
+    /// Counts per revolution of an encoder.
+    pub(crate) fn counts_per_rev(&self, name: &str) -> PyResult<u32> {
+        let (_, digits) = self.whole(name)?;
+        parsed_counts_per_rev(digits)
+            .map_err(|rule| value_error(format!("{name}={digits}: {rule}")))
+    }
+
+    fn whole(&self, name: &str) -> PyResult<(Option<i128>, &str)> {
+        match self {
+            Self::Whole(value, digits) => Ok((*value, digits)),
+            Self::Other(kind) => Err(PyTypeError::new_err(format!(
+                "{name}: has the type {kind}; pass an integer"
+            ))),
+        }
+    }
+
     /// The integer in a `range`. An error of another value ends with `remedy`.
     pub(crate) fn within<T>(
         &self,
@@ -40,14 +56,7 @@ impl Integer {
     where
         T: TryFrom<i128> + PartialOrd + Display,
     {
-        let (value, digits) = match self {
-            Self::Whole(value, digits) => (value, digits),
-            Self::Other(kind) => {
-                return Err(PyTypeError::new_err(format!(
-                    "{name}: has the type {kind}; pass an integer"
-                )));
-            }
-        };
+        let (value, digits) = self.whole(name)?;
         let value = value.and_then(|value| T::try_from(value).ok());
         value.filter(|value| range.contains(value)).ok_or_else(|| {
             value_error(format!(
@@ -68,12 +77,7 @@ impl<'py> FromPyObject<'_, 'py> for CountsPerRev {
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let integer: Integer = object.extract()?;
-        let remedy = ": four times the lines of a quadrature encoder";
-        Ok(Self(integer.within(
-            "counts_per_rev",
-            &COUNTS_PER_REV,
-            remedy,
-        )?))
+        Ok(Self(integer.counts_per_rev("counts_per_rev")?))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Counts that wrap before 2^32, unwrapped row by row.
 
 use std::collections::BTreeMap;
+use std::fmt::{self, Display};
 
 use estimator_core::{Count, WrapError};
 use pyo3::prelude::*;
@@ -81,6 +82,25 @@ impl Modulus {
             *of = Some(modulus(value)?);
         }
         Ok(moduli)
+    }
+}
+
+/// As an argument behind others; nothing where no counts wrap.
+impl Display for Moduli {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let (Some(modulus), false) = (self.counts, self.is_named) {
+            return write!(f, ", modulus={modulus}");
+        }
+        let named = [("counts", self.counts), ("coupled", self.coupled)];
+        let named = named.iter().filter_map(|(name, modulus)| {
+            let modulus = (*modulus)?;
+            Some(format!("'{name}': {modulus}"))
+        });
+        let named: Vec<_> = named.collect();
+        match named.is_empty() {
+            true => Ok(()),
+            false => write!(f, ", modulus={{{}}}", named.join(", ")),
+        }
     }
 }
 

@@ -10,7 +10,6 @@ use pyo3::types::PyDict;
 use recordings::arguments::ColumnOptions;
 use recordings::log::{Log, short_name};
 use recordings::recording::Capture;
-use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 
 use crate::background::abandonable;
@@ -89,7 +88,7 @@ pub(crate) fn coarsen<'py>(
     let device = self::device(device.as_ref(), Some(counts_per_rev)).map_err(value_error)?;
     check_file(py, &path)?;
     let fine_counts_per_rev = fine_counts_per_rev
-        .map(|counts| counts.within("fine_counts_per_rev", &COUNTS_PER_REV, ""))
+        .map(|counts| counts.counts_per_rev("fine_counts_per_rev"))
         .transpose()?;
     let counts_per_rev = counts_per_rev.get();
     let wanted = Wanted {

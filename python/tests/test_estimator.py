@@ -309,3 +309,13 @@ def test_count_at_the_modulus_or_above_is_refused():
         # The rows can be given again. A counter may count down below zero.
         expected = limpid.replay([0, 40, 79, 78], 1000, estimator="finite-difference").velocity
         np.testing.assert_array_equal(estimator.process([0, 40, 79, -22]).velocity, expected)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"varying": True}, {"modulus": 4096}, {"modulus": {"coupled": 65536}}, {"modulus": {"counts": 5, "coupled": 7}}],
+)
+def test_text_of_an_estimator_makes_the_same_one(options):
+    text = repr(limpid.Estimator("imm", 2000, counts_per_rev=1024, **options))
+    assert text == repr(eval(text))
+    assert all(f"{name}={value!r}" in text for name, value in options.items()), text

@@ -69,12 +69,12 @@ impl Parameters {
         self.layers.push(presets);
     }
 
-    /// Sets a value from `NAME.PARAM=VALUE`.
+    /// Sets a value from `NAME.PARAM=VALUE`, and returns the estimator.
     ///
     /// # Errors
     /// [`Failure::Input`] that names the wrong part and the possible ones, or a parameter that is set
     /// already.
-    pub fn set(&mut self, text: &str) -> Result<(), Failure> {
+    pub fn set(&mut self, text: &str) -> Result<&'static Kind, Failure> {
         let form = || {
             Failure::Input(format!(
                 "--set {text}: must be NAME.PARAM=VALUE; host-sim estimators lists them"
@@ -98,7 +98,7 @@ impl Parameters {
             index,
             value,
         });
-        Ok(())
+        Ok(kind)
     }
 
     /// The values for `kind` at a rate on a plant.

@@ -23,6 +23,39 @@ pub const LONGEST_STEP_S: f64 = 10e-6;
 /// Counts per revolution that an encoder may have: in a device, a recording or an option of a command.
 pub const COUNTS_PER_REV: RangeInclusive<u32> = 16..=4_000_000;
 
+/// What counts per revolution must be: the range in words and, for a number beyond one of its ends, the remedy.
+#[must_use]
+pub fn counts_per_rev_rule(number: Option<i128>) -> String {
+    let (least, most) = (*COUNTS_PER_REV.start(), *COUNTS_PER_REV.end());
+    let remedy = match number {
+        Some(number) if number > most.into() => {
+            "; of a finer encoder, divide the counts and this number by a power of two"
+        }
+        Some(number) if number < least.into() => "; a line of a quadrature encoder is four counts",
+        _ => "",
+    };
+    format!("from {least} to {most} counts per revolution{remedy}")
+}
+
+/// The counts per revolution that `text` states.
+///
+/// # Errors
+/// The rule that the text breaks.
+pub fn parsed_counts_per_rev(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok();
+    let counts = number.and_then(|number: i128| u32::try_from(number).ok());
+    counts
+        .filter(|counts| COUNTS_PER_REV.contains(counts))
+        .ok_or_else(|| {
+            let whole = if number.is_some() {
+                ""
+            } else {
+                "a whole number "
+            };
+            format!("must be {whole}{}", counts_per_rev_rule(number))
+        })
+}
+
 /// The device: constants for the design of controllers and estimators, and constants that only a
 /// simulation needs. `Device::default()` is the default device; a TOML file can override any value.
 ///

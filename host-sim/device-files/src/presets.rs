@@ -7,7 +7,7 @@ use estimator_catalogue::Parameter;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal;
-use crate::device::COUNTS_PER_REV;
+use crate::device::{COUNTS_PER_REV, counts_per_rev_rule};
 use crate::read::{Step, at_line, one_line};
 
 /// Whether the plant has Coulomb friction.
@@ -201,11 +201,9 @@ impl Presets {
             }
             let counts = preset.counts_per_rev;
             if let Some(counts) = counts.filter(|counts| !COUNTS_PER_REV.contains(counts)) {
-                let error = format!(
-                    "counts_per_rev = {counts} at rate_hz = {rate}: must be from {} to {} counts per revolution",
-                    COUNTS_PER_REV.start(),
-                    COUNTS_PER_REV.end()
-                );
+                let rule = counts_per_rev_rule(Some(counts.into()));
+                let error =
+                    format!("counts_per_rev = {counts} at rate_hz = {rate}: must be {rule}");
                 return wrong("counts_per_rev", error);
             }
             let same =

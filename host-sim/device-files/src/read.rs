@@ -5,7 +5,7 @@ use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::device::COUNTS_PER_REV;
+use crate::device::counts_per_rev_rule;
 
 /// The text of a regular file.
 ///
@@ -119,9 +119,8 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
         .replace(
             "expected u32",
             &format!(
-                "expected a whole number from {} to {}, without a decimal point",
-                COUNTS_PER_REV.start(),
-                COUNTS_PER_REV.end()
+                "expected a whole number {}, without a decimal point",
+                counts_per_rev_rule(None)
             ),
         );
     let what = shortened_quotes(&what);

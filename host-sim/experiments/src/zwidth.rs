@@ -16,7 +16,7 @@ use crate::parallel::in_order;
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use contact::{ContactTest, Finding};
-pub use plan::Plan;
+pub use plan::{HANDLE, Plan};
 use simulation::device::Device;
 use terminal::failure::Failure;
 

@@ -3,19 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::RangedI64ValueParser;
-use simulation::device::{COUNTS_PER_REV, Device};
+use simulation::device::{Device, parsed_counts_per_rev};
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name};
 use crate::recording::{ReadOptions, Recording, Survey, current_option, stated_counts_per_rev};
-
-/// The parser of an option with counts per revolution.
-#[must_use]
-pub fn counts_per_rev() -> RangedI64ValueParser<u32> {
-    let (least, most) = (*COUNTS_PER_REV.start(), *COUNTS_PER_REV.end());
-    clap::value_parser!(u32).range(i64::from(least)..=i64::from(most))
-}
 
 /// A line on counts per revolution of `source` that are `used` where a recording has `stated` others.
 #[must_use]
@@ -36,7 +28,7 @@ pub struct DeviceFile {
 pub struct EncoderOptions {
     /// Counts per revolution of the encoder: four times its lines [default: those in the device file,
     /// or as the recording states them]
-    #[arg(long, value_name = "N", value_parser = counts_per_rev())]
+    #[arg(long, value_name = "N", value_parser = parsed_counts_per_rev)]
     pub counts_per_rev: Option<u32>,
 }
 

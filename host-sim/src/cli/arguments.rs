@@ -160,14 +160,23 @@ pub(super) struct ParameterOptions {
 
 impl ParameterOptions {
     /// The parameters. A value from `--set` replaces one from `--presets`, which replaces a shipped
-    /// one.
-    pub(super) fn load(&self) -> Result<Parameters, Failure> {
+    /// one. `run` are the estimators of the command.
+    ///
+    /// # Errors
+    /// [`Failure::Input`], also if `--set` names an estimator that is not run.
+    pub(super) fn load(&self, run: &[&Kind]) -> Result<Parameters, Failure> {
         let mut parameters = Parameters::default();
         if let Some(path) = &self.presets {
             parameters.layer(catalogue::parameters::read(path)?);
         }
         for text in &self.set {
-            parameters.set(text)?;
+            let kind = parameters.set(text)?;
+            if !run.iter().any(|known| known.name == kind.name) {
+                return Err(Failure::Input(format!(
+                    "--set {text}: {} is not run; add --estimator {0}, or remove --set",
+                    kind.name
+                )));
+            }
         }
         Ok(parameters)
     }

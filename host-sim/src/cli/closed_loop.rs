@@ -157,14 +157,23 @@ pub(super) fn estimators(names: &[String], handle: &Kind) -> Result<Vec<&'static
     Ok(estimators)
 }
 
+/// The estimators of both velocities.
+pub(super) fn with_handle(
+    estimators: &[&'static Kind],
+    handle: &'static Kind,
+) -> Vec<&'static Kind> {
+    [estimators, &[handle]].concat()
+}
+
 /// Settings that all runs share.
 pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
     let handle = handle(options.handle_estimator.as_deref())?;
+    let estimators = estimators(&options.estimators, handle)?;
     Ok(LoopSettings {
         common: Settings {
             device: options.device.load_to_simulate()?,
-            estimators: estimators(&options.estimators, handle)?,
-            parameters: options.parameters.load()?,
+            parameters: options.parameters.load(&with_handle(&estimators, handle))?,
+            estimators,
             wanted: wanted(&options.scores)?.0,
         },
         handle,

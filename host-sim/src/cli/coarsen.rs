@@ -8,6 +8,7 @@ use experiments::real::wanted::Wanted;
 use recordings::arguments::{ColumnOptions, DeviceFile};
 use recordings::log::called;
 use recordings::recording::counts_per_rev_line;
+use simulation::device::parsed_counts_per_rev;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
@@ -21,11 +22,11 @@ pub(super) struct Coarsen {
     #[command(flatten)]
     columns: ColumnOptions,
     /// Counts per revolution of the coarse encoder, at most half of those of the fine one
-    #[arg(long, value_name = "C", value_parser = recordings::arguments::counts_per_rev())]
+    #[arg(long, value_name = "C", value_parser = parsed_counts_per_rev)]
     counts_per_rev: u32,
     /// Counts per revolution of the fine encoder [default: those in the recordings.toml beside the
     /// file, or those that the file states]
-    #[arg(long, value_name = "F", value_parser = recordings::arguments::counts_per_rev())]
+    #[arg(long, value_name = "F", value_parser = parsed_counts_per_rev)]
     fine_counts_per_rev: Option<u32>,
     /// Rate of the coarse recording, 10 to 100000 Hz, at most that of the fine one
     #[arg(long, value_name = "HZ", default_value_t = 1000.0)]

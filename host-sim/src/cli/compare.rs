@@ -24,7 +24,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
 use super::arguments::{
-    ParameterOptions, distinct, handle_help, kinds_at, scenarios, seconds_help,
+    ParameterOptions, distinct, handle_help, kinds, kinds_at, scenarios, seconds_help,
 };
 use super::closed_loop;
 use super::page::{self, progress};
@@ -133,7 +133,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let (cases, asked) = cases(options, report.is_some())?;
     let (device, parameters) = (
         options.device.load_to_simulate()?,
-        options.parameters.load()?,
+        options.parameters.load(&kinds(&options.estimators)?)?,
     );
     let settings = settings(&options.estimators, &cases, device, parameters, wanted)?;
     let bar = progress(cases.len(), "simulating");

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::real::wanted::rate;
-use recordings::arguments::counts_per_rev;
 use recordings::log::Log;
 use recordings::recording::{Capture, counts_per_rev_line};
+use simulation::device::parsed_counts_per_rev;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
@@ -40,7 +40,7 @@ pub(super) struct Decode {
     /// Counts per revolution of the encoder: four times its lines, or six times the pole pairs of Hall
     /// sensors, for a comment in the recording that
     /// the commands on recordings read
-    #[arg(long, value_name = "N", value_parser = counts_per_rev())]
+    #[arg(long, value_name = "N", value_parser = parsed_counts_per_rev)]
     counts_per_rev: Option<u32>,
     /// Write the recording to FILE, with the time of the latest edge; - is standard output
     #[arg(long, value_name = "FILE")]

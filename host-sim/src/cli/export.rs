@@ -105,7 +105,7 @@ fn header(options: &Export) -> Result<(), Failure> {
     let setup = Setup::of(&device, rate);
     let values = options
         .parameters
-        .load()?
+        .load(&[kind])?
         .values(kind, &setup, PlantKind::Friction);
     let header = kind.c(&setup, Hertz(*edge_clock), &values, constant.as_deref())?;
     write_whole(out, header.as_bytes())
@@ -139,7 +139,7 @@ fn identifier(text: &str) -> Result<String, String> {
 
 fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;
-    let parameters = options.parameters.load()?;
+    let parameters = options.parameters.load(&kinds)?;
     let log = Log::open(recording)?;
     let name = log.name();
     let Whole {

@@ -77,7 +77,9 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     let estimators = closed_loop::estimators(&options.estimators, handle)?;
     let settings = Settings {
         device: options.device.load_to_simulate()?,
-        parameters: options.parameters.load()?,
+        parameters: options
+            .parameters
+            .load(&closed_loop::with_handle(&estimators, handle))?,
         handle,
         seed: options.seed,
         seconds: options.seconds,

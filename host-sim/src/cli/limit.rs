@@ -14,7 +14,7 @@ use scoring::score::Wanted;
 use terminal::failure::Failure;
 use terminal::output::note;
 
-use super::arguments::{ParameterOptions, distinct, scenarios};
+use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
 use super::compare::{longer_than_skipped, settings};
 use super::page::{self, progress};
 use super::rates::{USUAL_HZ, rate_help, repeatable};
@@ -65,7 +65,7 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     }
     let (device, parameters) = (
         options.device.load_to_simulate()?,
-        options.parameters.load()?,
+        options.parameters.load(&kinds(&options.estimators)?)?,
     );
     let settings = settings(
         &options.estimators,

@@ -59,7 +59,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         [] => kinds(&ESTIMATORS.map(str::to_owned))?,
         names => kinds(names)?,
     };
-    let parameters = options.parameters.load()?;
+    let parameters = options.parameters.load(&kinds)?;
     let log = Log::open(&options.recording)?;
     let path = log.name();
     let Whole {

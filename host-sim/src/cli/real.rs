@@ -14,6 +14,7 @@ use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
+use simulation::device::parsed_counts_per_rev;
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
@@ -34,7 +35,7 @@ pub(super) struct Real {
     /// Counts per revolution to which recordings of a fine encoder are coarsened, a comma between
     /// two; those of a coarse encoder keep their own
     #[arg(long, value_name = "C,...", value_delimiter = ',', default_value = "4096",
-        value_parser = recordings::arguments::counts_per_rev())]
+        value_parser = parsed_counts_per_rev)]
     counts_per_rev: Vec<u32>,
     /// Rate of the ticks, 10 to 100000 Hz, a comma between two; recordings of a coarse encoder run at
     /// their own rate only
@@ -194,9 +195,10 @@ fn settings(options: &Real) -> Result<Settings, Failure> {
         .phase
         .iter()
         .try_for_each(|counts| phase(*counts).map(drop))?;
+    let estimators = kinds(&options.estimators)?;
     Ok(Settings {
-        estimators: kinds(&options.estimators)?,
-        parameters: options.parameters.load()?,
+        parameters: options.parameters.load(&estimators)?,
+        estimators,
         device: options.device.load()?,
         counts_per_rev: distinct(&options.counts_per_rev, &[]),
         rates_hz: rates,

@@ -15,7 +15,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, open_logs};
+use super::arguments::{ParameterOptions, kinds, open_logs};
 use super::page::{self, progress};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::Log;
@@ -62,7 +62,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         )));
     }
     let loaded = options.device.loaded()?;
-    let parameters = options.parameters.load()?;
+    let parameters = options.parameters.load(&kinds(&[])?)?;
     let logs = open_logs("LOG", &options.logs)?;
     let counted = options.recording.counted(loaded, &logs)?;
     let device = counted.device;

@@ -83,7 +83,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     }
     let kinds = kinds(&options.estimators)?;
     let loaded = options.device.loaded()?;
-    let parameters = options.parameters.load()?;
+    let parameters = options.parameters.load(&kinds)?;
     let log = Log::open(&options.trace)?;
     let name = log.name();
     let logs = std::slice::from_ref(&log);

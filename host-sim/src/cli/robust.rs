@@ -1,6 +1,6 @@
 //! `host-sim robust`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 
@@ -13,7 +13,6 @@ use experiments::table::layout::{NARROW, terminal_width};
 use experiments::transparency::compare::DEFAULT_ESTIMATOR;
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
-use shards::Part;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
@@ -21,7 +20,7 @@ use terminal::wording::wrapped;
 use super::arguments::ParameterOptions;
 use super::page;
 use super::rates::loop_rate_help;
-use super::shard::{self, Asked, Outputs};
+use super::shard::{self, Outputs, ShardOptions};
 
 /// Default folder of the report.
 pub(super) const REPORT: &str = "target/robust";
@@ -52,36 +51,18 @@ pub(super) struct Robust {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Run only one device of each scene, given by its index, below --devices, or the name of a corner
+    /// Run only one device of each scene, given by its index, below --devices, or the name of a corner;
+    /// there is no report without --out
     #[arg(long, value_name = "INDEX", conflicts_with = "shard")]
     pub(super) only: Option<Subject>,
-    /// Run only every Nth run from the Kth on, for example 1/4, and write a file for host-sim merge, no
-    /// report and no verdict
-    #[arg(long, value_name = "K/N", conflicts_with = "json")]
-    pub(super) shard: Option<Part>,
-    /// Folder of index.html, summary.svg, robust.csv, robust.json, or of the shard's file
-    /// [default: target/robust; no folder with --json - or --only]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Write the rows as JSON to FILE; - is standard output, which then has nothing else
-    #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) outputs: ShardOptions,
 }
 
 pub(super) fn run(options: &Robust, run_line: &str) -> Result<(), Failure> {
     let settings = settings(options)?;
-    let outputs = Outputs {
-        run_line,
-        out: options.out.as_deref(),
-        json: options.json.as_deref(),
-    };
+    let asked = options.outputs.asked(run_line, REPORT, DOING);
     let Some(subject) = options.only else {
-        let asked = Asked {
-            outputs,
-            part: options.shard,
-            usual: REPORT,
-            doing: DOING,
-        };
         return asked.run(&settings, finish);
     };
     if let Subject::Drawn(index) = subject
@@ -89,6 +70,7 @@ pub(super) fn run(options: &Robust, run_line: &str) -> Result<(), Failure> {
     {
         return Err(Failure::Input(no_device(index, options.devices)));
     }
+    let outputs = asked.outputs;
     let folder = outputs.folder(REPORT)?;
     let scenes = settings.scenes()?.into_iter();
     let jobs: Vec<_> = scenes.map(|scene| (scene, subject)).collect();
@@ -109,7 +91,7 @@ fn no_device(index: u64, devices: u64) -> String {
 fn settings(options: &Robust) -> Result<Settings, Failure> {
     let kind = Kind::named(&options.estimator)?;
     let device = options.device.load_to_simulate()?;
-    let parameters = options.parameters.load()?;
+    let parameters = options.parameters.load(&[kind])?;
     Ok(Settings {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scenes: Settings::scene_names(&options.scenes, kind)?,

@@ -1,7 +1,5 @@
 //! `host-sim sensitivity`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use experiments::designed::with_friction;
@@ -10,17 +8,17 @@ use experiments::sensitivity::{self, Cell, Plan, table::table};
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
-use shards::{Experiment as _, Part};
+use shards::Experiment as _;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
 use super::arguments::{
-    ParameterOptions, check_rates, distinct, kinds_at, scenarios, seconds_help,
+    ParameterOptions, check_rates, distinct, kinds, kinds_at, scenarios, seconds_help,
 };
 use super::page;
 use super::rates::{USUAL_HZ, rate_help, repeatable};
-use super::shard::{Asked, Outputs};
+use super::shard::{Outputs, ShardOptions};
 
 /// Default folder of the page.
 pub(super) const PAGE: &str = "target/sensitivity";
@@ -48,31 +46,13 @@ pub(super) struct Sensitivity {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Run only every Nth run of the plant (rate, scenario, seed) from the Kth on, for example 1/4, and
-    /// write a file for host-sim merge, no page
-    #[arg(long, value_name = "K/N", conflicts_with = "json")]
-    pub(super) shard: Option<Part>,
-    /// Folder of index.html, figures as SVG, sensitivity.csv, sensitivity.json, or of the shard's file
-    /// [default: target/sensitivity; no folder with --json -]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Write the scores as JSON to FILE; - is standard output, which then has nothing else
-    #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) outputs: ShardOptions,
 }
 
 pub(super) fn run(options: &Sensitivity, run_line: &str) -> Result<(), Failure> {
     let plan = plan(options)?;
-    let asked = Asked {
-        outputs: Outputs {
-            run_line,
-            out: options.out.as_deref(),
-            json: options.json.as_deref(),
-        },
-        part: options.shard,
-        usual: PAGE,
-        doing: DOING,
-    };
+    let asked = options.outputs.asked(run_line, PAGE, DOING);
     asked.run(&plan, finish)
 }
 
@@ -104,7 +84,7 @@ pub(super) fn finish(
 fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
     let device = options.device.load_to_simulate()?;
-    let parameters = options.parameters.load()?;
+    let parameters = options.parameters.load(&kinds(&options.estimators)?)?;
     let rates_hz = distinct(&options.rates, &USUAL_HZ);
     check_rates(&rates_hz, options.seconds)?;
     let places = rates_hz.iter().map(|&hz| with_friction(&device, hz));

@@ -27,6 +27,43 @@ pub(super) struct Merge {
     json: Option<PathBuf>,
 }
 
+/// Part of an experiment, and outputs of its command.
+#[derive(Debug, Args)]
+pub(super) struct ShardOptions {
+    /// Run only every Nth run from the Kth on, for example 1/4, and write a file for host-sim merge, no
+    /// page and no verdict
+    #[arg(long, value_name = "K/N", conflicts_with = "json")]
+    shard: Option<Part>,
+    /// Folder of index.html, its figures as SVG, the rows as CSV and JSON, or of the shard's file
+    /// [default: the command's name in target; no folder with --json -]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the rows as JSON to FILE; - is standard output, which then has nothing else
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl ShardOptions {
+    /// What the options ask of the command `run_line`, whose default folder is `usual`.
+    pub(super) fn asked<'a>(
+        &'a self,
+        run_line: &'a str,
+        usual: &'static str,
+        doing: &'static str,
+    ) -> Asked<'a> {
+        Asked {
+            outputs: Outputs {
+                run_line,
+                out: self.out.as_deref(),
+                json: self.json.as_deref(),
+            },
+            part: self.shard,
+            usual,
+            doing,
+        }
+    }
+}
+
 /// Outputs of a whole run.
 #[derive(Clone, Copy)]
 pub(super) struct Outputs<'a> {

@@ -1,26 +1,27 @@
 //! `host-sim zwidth`.
 
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
 
 use clap::Args;
 
+use catalogue::estimators::Kind;
 use experiments::closed_loop::loop_ticks;
 use experiments::designed::with_friction;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
-use experiments::zwidth::{Boundary, Plan, Settings, rows, table, with_lines};
+use experiments::zwidth::{Boundary, HANDLE, Plan, Settings, rows, table, with_lines};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
-use shards::{Experiment as _, Part};
+use shards::Experiment as _;
 use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{ParameterOptions, distinct, kinds_at};
+use super::arguments::{ParameterOptions, distinct, kinds, kinds_at};
+use super::closed_loop::with_handle;
 use super::page;
 use super::rates::{TUNED_HZ, loop_rate_help, repeatable};
-use super::shard::{Asked, Outputs};
+use super::shard::{Outputs, ShardOptions};
 
 /// Default folder of the page.
 pub(super) const PAGE: &str = "target/zwidth";
@@ -62,31 +63,13 @@ pub(super) struct Zwidth {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Run only every Nth loop (rate, encoder, estimator) from the Kth on, for example 1/4, and write a
-    /// file for host-sim merge, no page
-    #[arg(long, value_name = "K/N", conflicts_with = "json")]
-    pub(super) shard: Option<Part>,
-    /// Folder of index.html, figures as SVG, zwidth.csv, zwidth.json, or of the shard's file [default:
-    /// target/zwidth; no folder with --json -]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Write the bounds as JSON to FILE; - is standard output, which then has nothing else
-    #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) outputs: ShardOptions,
 }
 
 pub(super) fn run(options: &Zwidth, run_line: &str) -> Result<(), Failure> {
     let plan = plan(options)?;
-    let asked = Asked {
-        outputs: Outputs {
-            run_line,
-            out: options.out.as_deref(),
-            json: options.json.as_deref(),
-        },
-        part: options.shard,
-        usual: PAGE,
-        doing: DOING,
-    };
+    let asked = options.outputs.asked(run_line, PAGE, DOING);
     asked.run(&plan, finish)
 }
 
@@ -133,7 +116,9 @@ fn own_lines(device: &Device, given: &[u32]) -> u32 {
 /// All combinations of rate, encoder and estimator, in the order of the table.
 fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let device = options.device.load_to_simulate()?;
-    let parameters = options.parameters.load()?;
+    let handle = Kind::named(options.handle.as_deref().unwrap_or(HANDLE))?;
+    let run = with_handle(&kinds(&options.estimators)?, handle);
+    let parameters = options.parameters.load(&run)?;
     let rates_hz = distinct(&options.rates, &TUNED_HZ);
     for &rate_hz in &rates_hz {
         loop_ticks(rate_hz, 1.0)?;

@@ -85,7 +85,8 @@ fn recordings_of_different_encoders_are_refused() {
     folder.write("e.csv", text.replacen("= 1000", "= many", 1));
     for command in ["replay", "plot", "recommend", "identify"] {
         let error = folder.refused(&[command, "e.csv"]);
-        let said = "e.csv: line 1: counts_per_rev: 'many' is not a whole number from 16 to 4000000";
+        let said =
+            "e.csv: line 1: counts_per_rev: 'many': must be a whole number from 16 to 4000000";
         assert!(error.contains(said), "{command}: {error}");
     }
 }

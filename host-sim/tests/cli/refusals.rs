@@ -69,6 +69,16 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         (
             &[
                 "compare",
+                "--estimator",
+                "imm",
+                "--set",
+                "pll.bandwidth_hz=20",
+            ],
+            "--set pll.bandwidth_hz=20: pll is not run; add --estimator pll, or remove --set",
+        ),
+        (
+            &[
+                "compare",
                 "--set",
                 "low-pass.cutoff_hz=600",
                 "--rate",

@@ -3,17 +3,14 @@
 use haptic_control::Motor;
 
 use super::range::Range;
-use super::{COUNTS_PER_REV, Device, Ripple};
+use super::{COUNTS_PER_REV, Device, Ripple, counts_per_rev_rule};
 
 fn check_counts(key: &str, counts: u32) -> Result<(), String> {
     if COUNTS_PER_REV.contains(&counts) {
         return Ok(());
     }
-    Err(format!(
-        "{key} = {counts}: must be from {} to {} counts per revolution",
-        COUNTS_PER_REV.start(),
-        COUNTS_PER_REV.end()
-    ))
+    let rule = counts_per_rev_rule(Some(counts.into()));
+    Err(format!("{key} = {counts}: must be {rule}"))
 }
 
 fn check_motor(name: &str, motor: &Motor, ripple: &Ripple) -> Result<(), String> {
@@ -210,11 +207,13 @@ mod tests {
             ),
             (
                 "large.counts_per_rev = 0",
-                "large.counts_per_rev = 0: must be from 16 to 4000000 counts per revolution",
+                "large.counts_per_rev = 0: must be from 16 to 4000000 counts per revolution; a line of a \
+                 quadrature encoder is four counts",
             ),
             (
                 "reference.counts_per_rev = 4000001",
-                "reference.counts_per_rev = 4000001: must be from 16 to 4000000 counts per revolution",
+                "reference.counts_per_rev = 4000001: must be from 16 to 4000000 counts per revolution; of a finer \
+                 encoder, divide the counts and this number by a power of two",
             ),
             (
                 "coupler.damping_nms_per_rad = nan",

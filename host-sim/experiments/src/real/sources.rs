@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use simulation::device::COUNTS_PER_REV;
+use simulation::device::{COUNTS_PER_REV, counts_per_rev_rule};
 use terminal::failure::Failure;
 
 /// The list of a folder.
@@ -107,10 +107,9 @@ pub fn read(folder: &Path) -> Result<Vec<Source>, Failure> {
         }
         if !COUNTS_PER_REV.contains(&source.counts_per_rev) {
             return Err(Failure::Input(format!(
-                "{name}: {file}: counts_per_rev = {}: must be from {} to {}",
+                "{name}: {file}: counts_per_rev = {}: must be {}",
                 source.counts_per_rev,
-                COUNTS_PER_REV.start(),
-                COUNTS_PER_REV.end()
+                counts_per_rev_rule(Some(source.counts_per_rev.into()))
             )));
         }
         if !folder.join(file).is_file() {

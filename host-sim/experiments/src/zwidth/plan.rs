@@ -8,14 +8,17 @@ use crate::closed_loop::{check_handle, check_stamps, loop_ticks};
 use catalogue::estimators::Kind;
 use terminal::failure::Failure;
 
+/// Estimator of the handle's velocity beside an estimator that needs the current.
+pub const HANDLE: &str = "kalman-triple";
+
 /// All inputs of the boundaries of several loops. A job is one loop.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
     /// Estimators of the large motor's velocity, by name.
     pub estimators: Vec<String>,
-    /// Estimator of the handle's velocity; `None` for that of the large motor, or `kalman-triple` if
-    /// that one needs the current.
+    /// Estimator of the handle's velocity; `None` for that of the large motor, or [`HANDLE`] if that
+    /// one needs the current.
     pub handle: Option<String>,
     /// Whether each rate and encoder also has a loop with the true velocities of both motors.
     pub exact: bool,
@@ -42,7 +45,7 @@ impl Experiment for Plan {
         check_stamps(kinds.iter().copied())?;
         let handle = self.handle.as_deref().map(Kind::named).transpose()?;
         handle.map_or(Ok(()), |kind| check_handle("--handle-estimator", kind))?;
-        let triple = Kind::named("kalman-triple")?;
+        let triple = Kind::named(HANDLE)?;
         let mut cases = Vec::new();
         for &rate_hz in &self.rates_hz {
             loop_ticks(rate_hz, 1.0)?;

@@ -1,5 +1,6 @@
 //! Columns of a recording while it is read.
 
+mod checked;
 pub(super) mod currents;
 pub(super) mod stamps;
 
@@ -9,7 +10,7 @@ use terminal::failure::Failure;
 use super::Recording;
 use super::board::Board;
 use super::encoder::{Encoder, absolute};
-use super::layout::{Layout, Place, Places, sources::sources};
+use super::layout::{Layout, Place, Places};
 use super::options::units::WRAP;
 use super::options::{Column, ReadOptions};
 use super::records::Records;
@@ -19,9 +20,10 @@ use super::text::lines::LineNumbers;
 use super::text::row::Row;
 use super::text::thousands::Thousands;
 use super::times::clock::{self, Gaps};
+use super::times::jitter::Jitter;
 use super::times::own_times::OwnTimes;
 use super::times::{self, Repeated, Replaced};
-use currents::{Current, measured_note};
+use currents::Current;
 use stamps::{Stamp, Stamps};
 
 /// Columns whose numbers may have separators of thousands.
@@ -36,6 +38,7 @@ pub(super) struct Columns<'a> {
     replaced: Replaced,
     pub(super) repeated: Repeated,
     own_times: OwnTimes,
+    pub(super) jitter: Jitter,
     /// Marks in the numbers of the two positions.
     thousands: [Thousands; 2],
     /// Number of rows that were taken, and the time of the last one, s.
@@ -69,6 +72,7 @@ impl<'a> Columns<'a> {
             replaced: Replaced::default(),
             repeated: Repeated::default(),
             own_times: OwnTimes::default(),
+            jitter: Jitter::default(),
             thousands: Default::default(),
             taken: 0,
             first_t: f64::NAN,
@@ -146,7 +150,8 @@ impl<'a> Columns<'a> {
         self.lines.push(row.line);
         let options = self.options;
         if let Some(at) = self.place(Column::CountsLarge) {
-            self.counts_large.take(row, at, options, 0)?;
+            let count = self.counts_large.take(row, at, options, 0)?;
+            self.jitter.add(t, count);
         }
         if let Some(at) = self.place(Column::CountsSmall) {
             self.counts_small.take(row, at, options, 1)?;
@@ -281,7 +286,9 @@ impl<'a> Columns<'a> {
     ) -> Result<Recording, Failure> {
         let mut notes = self.checked(name, places, layout)?;
         let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
-        notes.extend(clock::fast(rate_hz).into_iter().chain(self.held(rate_hz)));
+        notes.extend(clock::fast(rate_hz));
+        notes.extend(self.jitter(rate_hz));
+        notes.extend(self.held(rate_hz));
         let mut gaps = Gaps::default();
         for (k, step) in self.t.windows(2).enumerate() {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));
@@ -330,58 +337,6 @@ impl<'a> Columns<'a> {
             },
             notes: Vec::new(),
         }
-    }
-
-    /// Notes on the rows that were taken: their columns, rows left out, and rounded positions.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] if many rows have the time of the row before, or if the time stamps of edges
-    /// are not those of the rows.
-    pub(super) fn checked(
-        &self,
-        name: &str,
-        places: &Places,
-        layout: &Layout,
-    ) -> Result<Vec<String>, Failure> {
-        for (column, thousands) in MARKED.iter().zip(&self.thousands) {
-            thousands.check(name, column.name())?;
-        }
-        let repeated = self
-            .repeated
-            .check(name, self.taken, self.last_t - self.first_t)?;
-        if let Some(at) = self.place(Column::EdgeTick) {
-            self.stamps.check(name, &layout.names[at.place])?;
-        }
-        let mut notes = Vec::new();
-        if let (Some(at), Some(hz)) = (self.replaced_place, self.options.row_rate_hz) {
-            notes.extend(self.replaced.check(name, &layout.names[at.place], hz)?);
-        }
-        notes.extend(sources(self.options, places, layout));
-        notes.extend(
-            self.measured()
-                .map(|(column, lack)| measured_note(column, lack)),
-        );
-        notes.extend(layout.notes(places));
-        notes.extend(self.own_times.notes());
-        if self.replaced_place.is_none() {
-            notes.extend(self.own_times.floats.note());
-        }
-        notes.extend(repeated);
-        if self.left_out > 0 {
-            notes.push(format!(
-                "{} rows without a position are left out, the first in line {}",
-                self.left_out, self.first_left_out
-            ));
-        }
-        if let Some(line) = self.cut {
-            notes.push(format!(
-                "line {line}, the last one, has no end and is left out: its last number may be cut"
-            ));
-        }
-        notes.extend(self.counts_large.notes(0, self.options));
-        notes.extend(self.counts_small.notes(1, self.options));
-        notes.extend(self.stamps.notes());
-        Ok(notes)
     }
 }
 

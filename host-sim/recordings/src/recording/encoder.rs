@@ -64,14 +64,14 @@ pub(super) struct Encoder {
 }
 
 impl Encoder {
-    /// Adds the count of a row.
+    /// Adds the count of a row and returns it.
     pub(super) fn take(
         &mut self,
         row: &Row,
         at: Place,
         options: &ReadOptions,
         motor: usize,
-    ) -> Result<(), Failure> {
+    ) -> Result<u32, Failure> {
         let column = at.column.name();
         self.is_counts = true;
         let (raw, exact) = match at.unit.scale {
@@ -126,7 +126,7 @@ impl Encoder {
         };
         self.last = Some(count);
         self.counts.push(count);
-        Ok(())
+        Ok(count)
     }
 
     /// Notes on positions whose step is not that of a count, and on a column that may hold no counts.

@@ -125,6 +125,7 @@ impl Survey {
         let repeated_rows = columns.repeated.rows();
         let (period, rate_hz) = steps.period(name)?;
         notes.extend(clock::fast(rate_hz));
+        notes.extend(columns.jitter(rate_hz));
         notes.extend(columns.held(rate_hz).filter(|_| resample.is_none()));
         let mut wraps = [None; 2];
         for (motor, seen) in seen.iter().enumerate() {

@@ -3,6 +3,7 @@
 pub(super) mod bursts;
 pub(super) mod clock;
 pub(super) mod float_times;
+pub(super) mod jitter;
 pub(super) mod moment;
 pub(super) mod own_times;
 pub(super) mod resample;

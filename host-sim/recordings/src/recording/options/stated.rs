@@ -1,6 +1,6 @@
 //! Counts per revolution that a recording states in a comment.
 
-use simulation::device::COUNTS_PER_REV;
+use simulation::device::parsed_counts_per_rev;
 use terminal::failure::Failure;
 
 use crate::recording::text::separator::comment;
@@ -19,7 +19,7 @@ pub fn counts_per_rev_line(counts_per_rev: u32) -> String {
 ///
 /// # Errors
 /// [`Failure::Input`] that names file, line and key, if the number is not a whole one in
-/// [`COUNTS_PER_REV`], or if two comments differ.
+/// [`COUNTS_PER_REV`](simulation::device::COUNTS_PER_REV), or if two comments differ.
 pub fn stated_counts_per_rev(head: &[u8], name: &str) -> Result<Option<u32>, Failure> {
     let text = String::from_utf8_lossy(head);
     let mut stated: Option<(usize, u32)> = None;
@@ -30,17 +30,14 @@ pub fn stated_counts_per_rev(head: &[u8], name: &str) -> Result<Option<u32>, Fai
         let Some(value) = value.trim_start().strip_prefix(['=', ':']) else {
             continue;
         };
-        let number = value.trim().parse().ok();
-        let Some(number) = number.filter(|number| COUNTS_PER_REV.contains(number)) else {
-            return Err(Failure::Input(format!(
-                "{name}: line {}: {KEY}: '{}' is not a whole number from {} to {}; correct or remove \
-                 the comment",
+        let value = value.trim();
+        let number = parsed_counts_per_rev(value).map_err(|rule| {
+            Failure::Input(format!(
+                "{name}: line {}: {KEY}: '{}': {rule}; correct or remove the comment",
                 index + 1,
-                value.trim().escape_debug(),
-                COUNTS_PER_REV.start(),
-                COUNTS_PER_REV.end()
-            )));
-        };
+                value.escape_debug(),
+            ))
+        })?;
         let (line, known) = *stated.get_or_insert((index, number));
         if known != number {
             return Err(Failure::Input(format!(
@@ -84,11 +81,20 @@ mod tests {
 
     #[test]
     fn number_out_of_range_is_reported_by_line_and_key() {
-        for number in ["", "15", "4000001", "1e3", "-64"] {
+        let [finer, lines] = ["divide the counts", "a line of a quadrature encoder"];
+        for (number, remedy) in [
+            ("", "a whole number"),
+            ("1e3", "a whole number"),
+            ("15", lines),
+            ("-64", lines),
+            ("4000001", finer),
+            ("99999999999", finer),
+        ] {
             let text = format!("# a log\n# counts_per_rev = {number}\n");
             let error = stated_counts_per_rev(text.as_bytes(), "r.csv").unwrap_err();
-            let said = format!("r.csv: line 2: counts_per_rev: '{number}' is not a whole number");
+            let said = format!("r.csv: line 2: counts_per_rev: '{number}': must be ");
             assert!(error.to_string().starts_with(&said), "{error}");
+            assert!(error.to_string().contains(remedy), "{error}");
         }
     }
 }
