@@ -29,4 +29,12 @@ mod tests {
         assert_eq!(percentile(values(), 1.0), 200.0);
         assert_eq!(percentile([-3.0].into_iter(), 0.99), 3.0);
     }
+
+    /// 148 of 150 magnitudes are 98.7 % of them, 149 are 99.3 %.
+    #[test]
+    fn at_least_the_share_does_not_exceed_a_percentile_between_two_ranks() {
+        let values = (1..=150).map(f64::from);
+        assert_eq!(percentile(values, 0.99), 149.0);
+        assert_eq!(percentile([4.0, -1.0].into_iter(), 0.6), 4.0);
+    }
 }

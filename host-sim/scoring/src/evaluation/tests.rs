@@ -158,3 +158,36 @@ fn rows_are_those_of_the_estimates_relative_to_finite_difference() {
     };
     assert!(rows(&kinds, &unknown).is_empty());
 }
+
+#[test]
+fn samples_at_which_the_velocity_is_not_known_are_in_no_row() {
+    let mut trace = track(2.0);
+    let evaluation = evaluation(&["pll", "finite-difference"]);
+    let estimates = evaluation.estimates(&trace);
+    let heading = Heading {
+        scenario: "track".to_owned(),
+        rate_hz: 1000.0,
+        plant: PlantKind::Friction,
+        seed: 1,
+    };
+    let interval = HapticInterval::new(0.1, 0.01, 0.07, 1e-3);
+    let is_known = |k: usize| !(900..1200).contains(&k);
+    let omega = trace.true_omega.clone().unwrap();
+    trace.known = Some((0..2000).map(is_known).collect());
+    trace.true_omega.as_mut().unwrap()[1000..1100].fill(1e4);
+    let rows = evaluation.rows(&heading, &trace, &estimates, interval, Wanted::ALL);
+    let rms = |velocity: &[f32]| {
+        let scored = (100..2000).filter(|k| is_known(*k));
+        let squares: f64 = scored
+            .map(|k| (f64::from(velocity[k]) - omega[k]).powi(2))
+            .sum();
+        (squares / 1600.0).sqrt()
+    };
+    let difference = rms(&estimates[1].velocity);
+    for (row, estimate) in rows.unwrap().iter().zip(&estimates) {
+        let expected = rms(&estimate.velocity);
+        let [found, share] = [row.score.rms_rad_s, row.score.rms_pct].map(Option::unwrap);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        assert!((share / (100.0 * expected / difference) - 1.0).abs() < 1e-12);
+    }
+}

@@ -218,6 +218,31 @@ mod tests {
         assert!((delay - 7.0).abs() < 1e-12, "{delay}");
     }
 
+    /// Sections of the same length with one and two transients.
+    #[test]
+    fn noises_of_sections_are_added_as_squares_and_transients_by_their_samples() {
+        let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
+        let mut sections = Sections::default();
+        for (ends, distance, noise) in [([400, 1000], 1.0, 1.0), ([400, 700], 4.0, 7.0)] {
+            let speed = |k: usize| ends.iter().filter(|end| k >= **end).count() as f64;
+            let truth: Vec<f64> = (0..1000).map(|k| 5.0 * speed(k)).collect();
+            let estimate: Vec<f32> = truth.iter().map(|w| *w as f32).collect();
+            let truth = Truth::new(&truth, 1000.0, interval, Wanted::ALL).unwrap();
+            let score = Score {
+                distance_transient_rad_s: Some(distance),
+                noise_rad_s: Some(noise),
+                ..truth.score(&estimate)
+            };
+            sections.add(&truth, &estimate, score, true);
+        }
+        let score = sections.score();
+        // (1 + 2 4) / 3, and the root of (1 + 49) / 2.
+        let distance = score.distance_transient_rad_s.unwrap();
+        assert!((distance - 3.0).abs() < 1e-12, "{distance}");
+        let noise = score.noise_rad_s.unwrap();
+        assert!((noise - 5.0).abs() < 1e-12, "{noise}");
+    }
+
     #[test]
     fn share_within_2_sigma_counts_every_scored_sample_once() {
         let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);

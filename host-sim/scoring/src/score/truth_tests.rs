@@ -367,3 +367,25 @@ fn slow_error_between_unknown_samples_has_no_noise() {
     let truth = Truth::where_known(&truth, Some(&known), RATE_HZ, interval(), Wanted::ALL).unwrap();
     near(truth.score(&slow).noise_rad_s, 0.0, 3e-3);
 }
+
+/// Half of the samples are known. Their noise is that of the whole trace, in which it is in all samples.
+#[test]
+fn noise_does_not_depend_on_the_share_of_known_samples() {
+    let n = 30_000;
+    let truth = vec![0.0; n];
+    let noisy = estimate(n, |t| 0.7 * (TAU * 210.0 * t).sin());
+    let known: Vec<_> = (0..n).map(|k| k % 600 < 300).collect();
+    let truth = Truth::where_known(&truth, Some(&known), RATE_HZ, interval(), Wanted::ALL).unwrap();
+    // The ends of 63 periods of the sine spread a little of its power beyond the band.
+    near(truth.score(&noisy).noise_rad_s, 0.7 / SQRT_2, 0.02);
+}
+
+#[test]
+fn delay_is_found_where_the_truth_is_known_late() {
+    let ramp = |t: f64| 8.0 * t;
+    let truth = signal(2500, ramp);
+    let late = estimate(2500, |t| ramp(t - 0.003));
+    let known: Vec<_> = (0..2500).map(|k| k >= 1000).collect();
+    let truth = Truth::where_known(&truth, Some(&known), RATE_HZ, interval(), Wanted::ALL).unwrap();
+    near(truth.score(&late).delay_ms, 3.0, 1e-3);
+}
