@@ -70,6 +70,12 @@ impl Encoder {
         self.count as u32
     }
 
+    /// Offset of boundary `e` of the disc, counts.
+    #[cfg(test)]
+    pub(crate) fn disc_error(&self, e: i64) -> f64 {
+        self.disc.error(e)
+    }
+
     fn boundary(&self, e: i64) -> f64 {
         self.origin + ((e - self.first) as f64 + self.disc.error(e)) * self.rad_per_count
     }

@@ -109,6 +109,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn counts_go_on_across_the_wrap_of_the_counter() {
+        let counts = [u32::MAX - 1, 1, 5, u32::MAX, 1 << 31, (1 << 31) - 1];
+        let continued = continued(&counts);
+        let half = 1_i64 << 31;
+        assert_eq!(continued, [-2, 1, 5, -1, -half, -half - 1]);
+    }
+
+    #[test]
     fn part_of_a_trace_has_the_columns_of_the_whole() {
         let edge = |age_s| Some(EdgeStamp { age_s, boundary: 7 });
         let whole = Trace {

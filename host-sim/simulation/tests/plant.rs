@@ -164,6 +164,37 @@ fn reversal_inside_a_step_agrees_with_the_closed_form() {
     }
 }
 
+/// The coupler of a handle that turns backward at constant speed stops the motor and drives it back.
+#[test]
+fn reversal_inside_a_step_follows_the_slip_of_the_handle() {
+    let mut device = Device::default();
+    device.large_ripple.friction = 0.0;
+    device.small_ripple.friction = 0.0;
+    device.stages.small.coulomb_friction = 0.0;
+    // A handle that the coupler does not slow down.
+    device.stages.small.inertia = 1e3;
+    let (b, j, c) = (
+        device.stages.damping,
+        device.stages.large.inertia,
+        device.stages.large.coulomb_friction,
+    );
+    let handle = -20.0;
+    let torque = -b * handle;
+    assert!(torque > 2.0 * c, "the coupler drives the motor");
+    for k in 0..50 {
+        let mut plant = Plant::new(&device, STEP_S);
+        let start = 5.0 + f64::from(k) * 1e-3;
+        plant.place(spinning(start), spinning(handle));
+        run(&mut plant, &Grip::Free, 1000, STEP_S);
+        // J dw/dt = -torque - b w - c until rest, then -torque - b w + c.
+        let rest_s = j / b * (b * start / (torque + c)).ln_1p();
+        let left = (-b / j * (0.01 - rest_s)).exp();
+        let expected = -(torque - c) / b * (1.0 - left);
+        let omega = plant.large().omega;
+        assert!((omega - expected).abs() < 2e-5, "{omega} {expected}");
+    }
+}
+
 /// Final poses of a run of both shafts under a moving hand and alternating currents.
 fn moving_run(device: &Device, step_s: f64, shrink: u32) -> [f64; 4] {
     let mut plant = Plant::new(device, step_s);

@@ -90,5 +90,22 @@ mod tests {
     #[test]
     fn disc_is_a_function_of_the_seed() {
         assert_eq!(parts(0.1, 0.1, 0.1), parts(0.1, 0.1, 0.1));
+        for sizes in [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]] {
+            let [phase_counts, line_counts, random_counts] = sizes;
+            let errors = Disc {
+                phase_counts,
+                line_counts,
+                random_counts,
+            };
+            let of_seed = |seed| DiscErrors::new(&errors, 4096, seed).0;
+            assert_ne!(of_seed(1), of_seed(2), "{sizes:?}");
+        }
+    }
+
+    #[test]
+    fn boundaries_below_the_first_one_are_those_of_the_turn_before() {
+        let disc = DiscErrors(vec![0.1, 0.2, 0.3]);
+        let errors = [-4, -3, -2, -1, 0, 1, 2, 3].map(|e| disc.error(e));
+        assert_eq!(errors, [0.3, 0.1, 0.2, 0.3, 0.1, 0.2, 0.3, 0.1]);
     }
 }

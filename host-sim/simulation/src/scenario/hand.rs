@@ -163,3 +163,27 @@ impl Scenario for FreeHand {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::rand_core::SeedableRng;
+
+    /// The description of `hold`: a hand trembling at 8 to 12 Hz.
+    #[test]
+    fn tremor_has_a_sine_of_8_to_10_hz_and_one_of_10_to_12_hz() {
+        let mut highest = 0.0_f64;
+        for seed in 0..100 {
+            let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+            let sines = Intent::about(0.0, 1e-3).tremor(&mut random).sines;
+            assert_eq!(sines.len(), 2);
+            for (sine, hz) in sines.iter().zip([8.0..10.0, 10.0..12.0]) {
+                assert!(hz.contains(&(sine.rad_per_s / TAU)), "{sine:?}");
+                assert!((2.5e-3..5e-3).contains(&sine.amplitude), "{sine:?}");
+                assert!((0.0..TAU).contains(&sine.phase), "{sine:?}");
+                highest = highest.max(sine.rad_per_s / TAU);
+            }
+        }
+        assert!(highest > 11.9, "{highest} Hz");
+    }
+}

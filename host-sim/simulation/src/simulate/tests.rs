@@ -187,3 +187,53 @@ fn intended_motion_of_a_seed_is_the_same_at_every_rate() {
         assert!(part < bound, "{name}: {part}");
     }
 }
+
+/// Their motion is that of the model of a Kalman filter.
+#[test]
+fn linear_plant_has_no_friction_ripple_or_disc_errors() {
+    let mut device = Device::default();
+    device.large_ripple.torque = 0.1;
+    device.disc = Disc {
+        phase_counts: 0.2,
+        line_counts: 0.15,
+        random_counts: 0.09,
+    };
+    let mut ideal = Device::default().frictionless();
+    ideal.large_ripple.torque = 0.0;
+    for name in ScenarioName::ALL {
+        let run = |device| simulate(device, name, 1000.0, 1, 2.0, ALL).unwrap();
+        let (found, ideal) = (run(&device), run(&ideal));
+        let is_ideal =
+            found.counts_large == ideal.counts_large && found.true_omega == ideal.true_omega;
+        assert_eq!(is_ideal, name.linear_plant(), "{name}");
+    }
+}
+
+/// Two runs on one device with two seeds have two discs of the same make.
+#[test]
+fn disc_is_drawn_from_the_seed_of_the_run() {
+    let mut device = Device::default();
+    device.disc.line_counts = 0.3;
+    let disc = |seed| {
+        let run = Run::new(&device, ScenarioName::Step, 1000.0, seed, ALL);
+        let encoder = run.large;
+        (0..4096).map(|e| encoder.disc_error(e)).collect::<Vec<_>>()
+    };
+    assert_eq!(disc(1), disc(1));
+    assert_ne!(disc(1), disc(2));
+}
+
+/// With the same numbers the torque noise of `stochastic` would follow from its current.
+#[test]
+fn run_draws_other_numbers_than_its_scenario() {
+    for name in ScenarioName::ALL {
+        for seed in 0..20 {
+            let run = Run::new(&Device::default(), name, 1000.0, seed, ALL);
+            let mut of_scenario = Xoshiro256PlusPlus::seed_from_u64(name.mix(seed));
+            let angle = run.plant.large().angle;
+            for _ in 0..100 {
+                assert_ne!(angle, draw(&mut of_scenario, 0.0, TAU), "{name}, {seed}");
+            }
+        }
+    }
+}
