@@ -8,8 +8,11 @@ use super::ladder::Ladder;
 use super::member::Member;
 use super::state::tests::judged;
 use super::state::{LEAST_OF_COUNT, ModelBankState};
+use super::{ModelBank, NoStamps};
 use crate::edge_clock::FreshEdge;
-use crate::units::Count;
+use crate::estimator::VaryingPeriod;
+use crate::sample::Sample;
+use crate::units::{Count, Hertz};
 
 /// Probability that a position plus noise is inside ±1/2, and mean and variance of the position if so, by
 /// summation over both.
@@ -223,6 +226,30 @@ fn noise_of_a_boundary_grows_where_innovations_alternate() {
         0.01 * grown * grown + 0.02 * 0.01,
     );
     assert_eq!(after(&[2.0, -2.0].repeat(20), true), 0.1);
+}
+
+/// The count says nothing about members that are in the middle of its interval, and each gets a share of the weights of
+/// the others: one change a second, to one of K - 1 others.
+#[test]
+fn weights_mix_by_the_true_time_of_an_interval() {
+    let rate = 1000.0;
+    let bank = ModelBank::<3, NoStamps>::new(Hertz(rate)).unwrap();
+    for period in [0.5_f32, 1.0, 4.0, 16.0] {
+        let mut state = ModelBankState::<3>::start(Count(0), 1e-3);
+        for member in &mut state.members {
+            member.covariance = [1e-6, 0.0, 0.0, 1e-12, 0.0, 1e-12];
+        }
+        let weights = [0.5, 0.3, 0.2_f32];
+        let likelihoods = weights.map(|weight| Likelihood::new(weight, 0.0));
+        state.weigh(&judged(likelihoods, 0.0), 0.0, 1e-3);
+        bank.update_over(&mut state, &Sample::new(Count(0)), period);
+        let change = f64::from(period) / rate / 2.0;
+        for (found, weight) in state.weights().iter().zip(weights) {
+            let expected = (f64::from(weight) + change) / (1.0 + 3.0 * change);
+            let off = f64::from(*found) - expected;
+            assert!(off.abs() < 1e-6, "{period}: {found} {expected}");
+        }
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use super::{BankInput, DrivenBank, DrivenBankState, Evidence, FOLLOWED, START, root};
 use crate::bank::interval::Likelihood;
-use crate::bank::{ModelBank, ModelBankState, NoStamps, Stamps};
+use crate::bank::{ModelBank, ModelBankState, NoStamps, Stamped, Stamps};
 use crate::confidence::Confidence;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
 use crate::filters::draws::draw;
@@ -110,6 +110,23 @@ fn exact_input_leaves_the_error_of_a_motion_without_acceleration() {
         assert!(plain > 0.1, "{name}: {plain}");
         assert!(after.last().unwrap().1.probability() > 0.99, "{name}");
     }
+}
+
+/// The input of a tick acts from an edge within it on.
+#[test]
+fn exact_edges_and_an_exact_input_leave_next_to_no_error() {
+    let (samples, velocities) = erratic(2000);
+    let bank = ModelBank::<2, Stamped>::with_edges(CLOCK, RATE).unwrap();
+    let mut state = bank.start(&samples[0]);
+    let found: Vec<_> = (samples.iter())
+        .map(|sample| {
+            bank.advance(&mut state, sample, Some(sample.current.get()), true);
+            state.velocity()
+        })
+        .collect();
+    let error = rms(found.into_iter(), &velocities);
+    // A ten-thousandth of the changes of the velocity.
+    assert!(error < 2e-4, "{error}");
 }
 
 #[test]

@@ -90,7 +90,9 @@ fn nothing_is_learned_while_the_count_stands_still() {
             state.collect(0.0, &input);
         }
     };
-    rest(&mut state, 2 * input.block);
+    let moving = state;
+    rest(&mut state, input.block);
+    assert_ne!(state.regression, moving.regression);
     let learned = state;
     rest(&mut state, 5000);
     assert_eq!(state.gains, learned.gains);
