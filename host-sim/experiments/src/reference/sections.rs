@@ -307,8 +307,7 @@ mod tests {
         let rows = |marked: &[usize]| -> Vec<_> {
             let row = |k| match marked.iter().position(|at| *at == k) {
                 None => Row::Next,
-                Some(nth) if nth % 2 == 0 => Row::Bad,
-                Some(_) => Row::Jumped,
+                Some(nth) => [Row::Bad, Row::Jumped, Row::Resumed][nth % 3],
             };
             (0..40).map(row).collect()
         };

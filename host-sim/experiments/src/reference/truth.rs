@@ -286,6 +286,17 @@ mod tests {
         assert!(line(&log, 4096).contains("does not follow counts_large"));
     }
 
+    /// Most of the error is a motion that is added, which no delay explains.
+    #[test]
+    fn delay_that_explains_little_of_an_error_is_not_said() {
+        for (added, said) in [(0.0, true), (3.0, false)] {
+            let other = |t: f64| added * (TAU * 1.9 * t).cos();
+            let line = line(&swing(|omega, t| omega(t - 5e-3) + other(t)), 4096);
+            assert_eq!(line.contains("ms behind counts_large"), said, "{line}");
+            assert_eq!(line.is_empty(), !said, "{line}");
+        }
+    }
+
     #[test]
     fn velocity_that_is_computed_from_the_counts_is_named() {
         let mut log = swing(|omega, t| omega(t));

@@ -72,3 +72,32 @@ fn rows_are_left_out_where_edges_are_rare() {
         slow.trace.counts_large[3 * every]
     );
 }
+
+#[test]
+fn rows_beside_an_edge_are_not_left_out() {
+    let slow = swinging(90.0, 0.3, 1.5, [20e3, 2.0]);
+    let counts = &slow.trace.counts_large;
+    let mut rows = vec![sections::Row::Next; counts.len()];
+    thinned::pass_over(&mut rows, &slow);
+    for k in 1..counts.len() - 1 {
+        let is_at_edge = counts[k - 1] != counts[k] || counts[k] != counts[k + 1];
+        let is_kept = k % 10 == 0 || is_at_edge;
+        assert_eq!(rows[k] == sections::Row::Next, is_kept, "row {k}");
+    }
+}
+
+/// A sensor that is noisier than its counts informs alike in every row that is taken: each tenth, and two rows at each
+/// edge, of which there are 80 rows or more to the next but for a fifth of them.
+#[test]
+fn bandwidth_is_that_of_the_rows_that_are_taken() {
+    let noises = Noises {
+        jerk: 1e9,
+        sensor: 100.0,
+    };
+    let slow = swinging(90.0, 0.3, 1.5, [20e3, 2.0]);
+    let rows_hz = 2e3;
+    let corner_hz = f64::powf(1e9 * rows_hz / (100.0 + 1.0 / 12.0), 1.0 / 6.0) / TAU;
+    let ratio = Reference::with(&slow, 90, noises).bandwidth_hz / corner_hz;
+    // A quarter more rows are 4 % more bandwidth.
+    assert!((0.99..1.05).contains(&ratio), "{ratio}");
+}
