@@ -221,6 +221,48 @@ mod tests {
         assert_eq!(bounce(2.8), Some(Violation::Energy));
     }
 
+    /// A handle that moves 1 mrad in contact gains as much as the threshold does over 3 mrad.
+    #[test]
+    fn energy_over_a_small_angle_is_compared_with_that_over_3_mrad() {
+        let gained = |share: f64| {
+            let mut evaluator = Evaluator::new(THRESHOLD, 1e-3, 0.0);
+            for _ in 0..=10 {
+                evaluator.update(ContactTick {
+                    resting: false,
+                    contact: true,
+                    felt: share * 3.0 * THRESHOLD,
+                    omega: 0.1,
+                    stopped: false,
+                });
+            }
+            evaluator.violation()
+        };
+        assert_eq!(gained(0.99), None);
+        assert_eq!(gained(1.01), Some(Violation::Energy));
+    }
+
+    /// Of 0.35 mN.m the handle gains twice as much over 20 mrad, and loses it in the next contact.
+    #[test]
+    fn energy_that_is_lost_in_a_later_contact_was_gained() {
+        let contacts = |gained: f64| {
+            let mut evaluator = Evaluator::new(THRESHOLD, 1e-3, 0.0);
+            for k in 0..60 {
+                let contact = !(20..40).contains(&k);
+                let share = if k < 20 { gained } else { -6.0 };
+                evaluator.update(ContactTick {
+                    resting: false,
+                    contact,
+                    felt: if contact { share * THRESHOLD } else { 0.0 },
+                    omega: 1.0,
+                    stopped: false,
+                });
+            }
+            evaluator.violation()
+        };
+        assert_eq!(contacts(0.5), None);
+        assert_eq!(contacts(2.0), Some(Violation::Energy));
+    }
+
     #[test]
     fn stop_by_the_monitor_fails() {
         let mut evaluator = Evaluator::new(THRESHOLD, 1e-3, 0.0);
