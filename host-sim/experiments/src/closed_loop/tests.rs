@@ -76,3 +76,22 @@ fn disabled_amplifier_has_no_current_whatever_its_zero() {
     .unwrap();
     assert!((1..800).contains(&stopped), "{stopped}");
 }
+
+/// The amplifiers get each command a number of ticks after its computation, and nothing before the first one.
+#[test]
+fn late_command_is_that_of_so_many_ticks_before() {
+    for late_ticks in [0, 1, 3] {
+        let run = Loop {
+            late_ticks,
+            ..with_zeros(SceneKind::FreeAir, Hand::Moving, [0.0; 2])
+        };
+        let (mut commanded, mut applied) = (vec![0.0; late_ticks], Vec::new());
+        run.run(300, |now| {
+            commanded.push(now.commanded.1);
+            applied.push(now.small_amplifier[1]);
+        })
+        .unwrap();
+        assert_eq!(applied, commanded[..300], "{late_ticks} ticks");
+        assert!(commanded.windows(2).any(|pair| pair[0] != pair[1]));
+    }
+}
