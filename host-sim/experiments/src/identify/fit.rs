@@ -251,3 +251,38 @@ impl Normal {
         x.iter().zip(&scale).map(|(x, s)| x * s).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fits that leave out a block each, and those with the counts' odd part halved, of one coefficient.
+    fn estimate(without: [f64; BLOCKS], halved: [f64; 2]) -> Estimate {
+        let of = |value: f64| (vec![value], 0.0);
+        let fit = Fit {
+            coefficients: vec![5.0],
+            lag_s: 0.0,
+            unexplained: 0.0,
+            driven: 1.0,
+            without: without.map(of).to_vec(),
+            halved: halved.map(of),
+        };
+        fit.estimate(|coefficients, _| coefficients[0])
+    }
+
+    /// The jackknife: the variance of a value is (n - 1) / n of the sum of squares of the n values that leave out a
+    /// block. Student's factor for 13 degrees of freedom and 95 % is 2.1604.
+    #[test]
+    fn half_width_is_that_of_the_jackknife_and_of_the_bias_by_the_counts() {
+        let alternating = std::array::from_fn(|k| if k % 2 == 0 { 5.1 } else { 4.9 });
+        let spread = 2.1604 * (13.0_f64 / 14.0 * 14.0 * 0.01).sqrt();
+        let none = estimate(alternating, [5.4, 4.6]);
+        assert_eq!(none.value, 5.0);
+        assert!((none.half / spread - 1.0).abs() < 1e-4, "{none:?}");
+        assert!(!none.by_counts);
+        // Half of both changes together is what the counts explain.
+        let biased = estimate(alternating, [5.0, 7.0]);
+        assert!((biased.half / spread.hypot(1.0) - 1.0).abs() < 1e-4);
+        assert!(biased.by_counts, "{biased:?} {spread}");
+    }
+}
