@@ -375,7 +375,7 @@ mod tests {
             p99_rad_s: 0.0,
             delay_ms: None,
             sd_rad_s: None,
-            cost: most.map(|most| Cost { mean: most, most }),
+            cost: most.map(|most| Cost { mean: 1.0, most }),
             reads: Vec::new(),
             parameters: BTreeMap::new(),
             rust: String::new(),

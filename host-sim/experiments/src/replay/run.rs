@@ -218,6 +218,7 @@ mod tests {
             },
             ..Recording::default()
         };
+        let recorded = recording.trace.clone();
         let parameters = Parameters::default();
         let run = || Run::new(&columns, rows, "r", &kinds, &device, &parameters).unwrap();
         let mut whole = run();
@@ -250,6 +251,18 @@ mod tests {
                 .collect()
         };
         assert_eq!(damping(&sections), damping(&whole));
-        assert!(damping(&whole).iter().flatten().count() > 0);
+        let mut learning = 0;
+        for (candidate, found) in whole.evaluation.candidates().iter().zip(damping(&whole)) {
+            let learned = candidate.estimator().damping_ratio(&recorded);
+            let last = learned.map(|ratios| {
+                let last = ratios[1800..].iter().map(|ratio| f64::from(*ratio));
+                device.stages.damping * last.sum::<f64>() / 200.0
+            });
+            let near = |(a, b): (f64, f64)| (a / b - 1.0).abs() < 1e-9;
+            assert_eq!(last.is_some(), found.is_some());
+            assert!(last.zip(found).is_none_or(near), "{last:?} {found:?}");
+            learning += usize::from(found.is_some());
+        }
+        assert!(learning > 0);
     }
 }
