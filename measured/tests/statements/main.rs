@@ -1,6 +1,7 @@
 //! What the pages say beside their tables holds for the files of `measured/`. A figure in a statement is
 //! rounded as the page shows it, and the words of most statements are made from the file.
 
+mod cost;
 mod estimators;
 mod feel;
 
