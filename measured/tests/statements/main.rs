@@ -2,8 +2,11 @@
 //! rounded as the page shows it, and the words of most statements are made from the file.
 
 mod cost;
+mod errors;
 mod estimators;
 mod feel;
+mod numerics;
+mod stops;
 
 use std::fs;
 use std::path::Path;
