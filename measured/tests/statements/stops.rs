@@ -3,7 +3,7 @@
 use measured::Row;
 use measured::tables::{ROBUSTNESS, SCENE_FAULT_FORCE, SCENE_FAULT_TIME};
 
-use crate::{number, rows, says, span};
+use crate::{between, number, of, rows, says, span, whole};
 
 /// Faults of the large motor and its encoder.
 const OF_LARGE: [&str; 3] = ["stuck-both", "swapped", "open-lead"];
@@ -62,6 +62,16 @@ fn faults_in_scenes_end_as_the_statements_say() {
             1e-3 * most
         )],
     );
+}
+
+/// These faults end a push into the wall by the balance of the torques.
+#[test]
+fn balance_of_the_torques_takes_the_time_of_the_statement() {
+    let rows = rows(&SCENE_FAULT_TIME);
+    let faults = ["stuck-both", "open-lead", "small-stuck", "small-swapped"];
+    let times = span(faults.map(|fault| of(&rows, "wall", fault)));
+    let said = format!("| {} ms of motion |", between(whole(times)));
+    says("docs/board.md", &[said]);
 }
 
 #[test]
