@@ -5,7 +5,7 @@ use measured::tables::{
     EVIDENCE_VESC, REAL_MOTION, REAL_RESOLUTION, REFERENCE, SCENARIOS_1000HZ, WRONG_CONSTANTS,
     Z_WIDTH_SEEDS,
 };
-use measured::{Row, digits};
+use measured::{Row, Table, digits};
 
 use crate::{between, name, number, of, range, rows, says, span, tenths, whole};
 
@@ -261,4 +261,42 @@ fn bank_has_less_error_than_every_comparator() {
             }
         }
     }
+}
+
+/// RMS error of a row on a page for maintainers, % of finite difference.
+fn rms(table: &Table, wanted: &str, counts: &str, khz: &str) -> f64 {
+    let rows = rows(table);
+    let is = |row: &&Row| {
+        name(row) == wanted
+            && row.text("counts_per_rev") == Ok(counts)
+            && row.text("rate_khz") == Ok(khz)
+    };
+    let row = rows.iter().find(is);
+    let row = row.unwrap_or_else(|| panic!("{}: no {wanted}", table.name));
+    row.number("rms_pct").unwrap()
+}
+
+#[test]
+fn comparators_compare_as_their_pages_say() {
+    let moteus = |wanted, counts| rms(&EVIDENCE_MOTEUS, wanted, counts, "30");
+    let times = moteus("peer:moteus", "4096") / moteus("imm", "4096");
+    let said = format!("the default has {times:.1} times the RMS error of `imm` at 30 kHz");
+    says("docs/evidence/moteus.md", &[said]);
+    assert!(moteus("peer:moteus", "16384") < moteus("peer:moteus-tuned", "16384"));
+    assert!(moteus("peer:moteus", "16384") > moteus("imm", "16384"));
+    for counts in ["4096", "8192"] {
+        let odrive = |wanted| rms(&EVIDENCE_ODRIVE, wanted, counts, "8");
+        assert!(odrive("peer:odrive-tuned") < odrive("pll-tuned"));
+        let vesc = |wanted| rms(&EVIDENCE_VESC, wanted, counts, "12.5");
+        assert!(vesc("peer:vesc-pll") > 3.0 * vesc("peer:vesc-pll-tuned"));
+        assert!(vesc("peer:vesc-pll-tuned") < vesc("pll-tuned"));
+    }
+    let simplefoc = |wanted| rms(&EVIDENCE_SIMPLEFOC, wanted, "4096", "1");
+    assert!(simplefoc("m-over-t") < 0.7 * simplefoc("peer:simplefoc-encoder-tuned"));
+    let wheel = |wanted, counts| rms(&EVIDENCE_OPENFFBOARD, wanted, counts, "1");
+    assert!(wheel("peer:openffboard", "4096") < wheel("peer:openffboard-tuned", "4096"));
+    assert!(wheel("peer:openffboard", "10000") > wheel("peer:openffboard-tuned", "10000"));
+    let dvrk = |wanted| rms(&EVIDENCE_DVRK, wanted, "4096", "32");
+    let part = dvrk("peer:dvrk-predicted") / dvrk("peer:dvrk-measured");
+    assert!((0.45..0.55).contains(&part), "half are {part}");
 }
