@@ -164,6 +164,20 @@ fn requests_to_arm_are_noted_once() {
     }
 }
 
+/// The flash is not written while a request to arm waits, whatever came behind it.
+#[test]
+fn request_to_arm_is_noted_with_commands_behind_it_in_the_same_call() {
+    let mut queue = Messages::new();
+    let (producer, _consumer) = queue.split();
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
+    let requests = [Request::Arm, Request::KeepAlive, Request::Disarm];
+    let frames = requests.map(|request| encode(Command::Request(request)));
+    let mut bytes = frames.concat().into_iter();
+    commands.receive(Channel::Port, || bytes.next());
+    assert_eq!(bytes.len(), 0);
+    assert!(commands.take_arms());
+}
+
 /// Largest current of the large motor with the handle held away from where the scene began, A.
 fn largest(mut bench: Bench) -> f32 {
     let mut largest = 0.0_f32;
