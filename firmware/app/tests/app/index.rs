@@ -91,6 +91,18 @@ fn report_has_pulses_count_deviation_and_position_of_both() {
     assert_eq!(bench.take_index().pair(true), Some([large, small]));
 }
 
+/// A frame reports the pulses of all ticks since the one before.
+#[test]
+fn pulse_of_either_encoder_in_any_tick_is_reported_once() {
+    for (large, small) in [(Some(100), None), (None, Some(7))] {
+        let mut bench = Bench::start(0);
+        pulse(&mut bench, large, small);
+        pulse(&mut bench, None, None);
+        let due = [(); 2].map(|()| bench.take_index().pair(false).is_some());
+        assert_eq!(due, [WANTED, false], "{large:?} {small:?}");
+    }
+}
+
 /// The mechanical zeros are 40 counts above the index of the large encoder, and 7 below that of the small one.
 #[test]
 fn reported_positions_are_relative_to_the_mechanical_zeros() {
