@@ -144,6 +144,45 @@ fn any_fault_disables_the_amplifiers_in_the_same_tick() {
     assert_eq!(bench.state().0, Mode::Armed);
 }
 
+/// As where the supply of an amplifier opens the interlock loop. The cause is the one from which the others may
+/// follow.
+#[test]
+fn several_faults_in_a_tick_disable_the_amplifiers_too() {
+    let [not_ready, interlock, clock] = [Faults::NOT_READY, Faults::INTERLOCK, Faults::CLOCK];
+    for (present, cause) in [
+        (&[not_ready, interlock][..], Stop::Interlock),
+        (&[not_ready, clock], Stop::ClockFailure),
+        (&[interlock, clock], Stop::ClockFailure),
+        (&[not_ready, interlock, clock], Stop::ClockFailure),
+    ] {
+        let with = |faults: Faults, fault: &Faults| faults.with(*fault, true);
+        let faults = present.iter().fold(Faults::NONE, with);
+        // In whatever order they are found.
+        assert_eq!(faults, present.iter().rev().fold(Faults::NONE, with));
+        let mut bench = Bench::start(FIRST);
+        assert_eq!(bench.step(&Inputs { faults, ..CALM }), None);
+        assert_eq!(bench.state(), (Mode::Safe, cause));
+    }
+}
+
+/// Switched off by its selection, or by a restart without another one.
+#[test]
+fn scene_that_is_off_commands_no_current() {
+    for requests in [&[Request::Select(0)][..], &[Request::Disarm, Request::Arm]] {
+        let mut bench = Bench::start(FIRST.max(1));
+        for request in requests {
+            bench.request(*request);
+        }
+        bench.run(ticks(0.05));
+        assert_eq!(bench.state(), (Mode::Armed, Stop::None));
+        while bench.handle < 0.15 {
+            bench.handle += 4e-4;
+            assert_eq!(bench.request(Request::KeepAlive), Some(ZERO));
+        }
+        assert_eq!(bench.record().estimation.number, None, "{requests:?}");
+    }
+}
+
 #[test]
 fn debug_settings_refuse_to_arm() {
     let mut bench = Bench::new();
