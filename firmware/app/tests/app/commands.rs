@@ -127,6 +127,20 @@ fn rejected_commands_are_counted_by_reason() {
     }
 }
 
+/// The first parameter of each scene, which 1e-3 is in the range of, or it has none.
+#[test]
+fn parameters_of_scenes_that_the_image_does_not_have_are_unknown() {
+    for kind in SceneKind::ALL {
+        let tune = encode(Command::Tune {
+            scene: kind.number(),
+            parameter: 0,
+            value: 1e-3,
+        });
+        let is_taken = !messages(&[tune]).is_empty();
+        assert!(!is_taken || scene::has(kind.number()), "{kind}");
+    }
+}
+
 #[test]
 fn counts_are_reported_once() {
     let mut queue = Messages::new();

@@ -19,6 +19,22 @@ fn torque_ends_with_the_small_motor() {
     }
 }
 
+/// Position, stiffness and damping of the wall.
+#[test]
+fn parameters_end_at_their_bounds() {
+    for (parameter, bound) in [(0, 6.3), (1, 0.35), (2, 5e-3)] {
+        for (value, is_taken) in [(bound, true), (1.001 * bound, false)] {
+            let tune = Command::Tune {
+                scene: 2,
+                parameter,
+                value,
+            };
+            let taken = !messages(&[encode(tune)]).is_empty();
+            assert_eq!(taken, is_taken, "{parameter}: {value}");
+        }
+    }
+}
+
 /// Turns the handle to an angle at a constant velocity, rad/s.
 fn turn(bench: &mut Bench, to: f64, velocity: f64) {
     let step = velocity / 1e4;
