@@ -26,6 +26,23 @@ fn current_that_is_not_commanded_stops_the_device_after_50_ms() {
     assert_eq!(bench.state(), expected);
 }
 
+#[test]
+fn device_that_is_armed_again_may_disagree_for_50_ms_again() {
+    let wrong = Some(Currents {
+        large: Amps::new(0.5),
+        ..ZERO
+    });
+    let mut bench = Bench::start(0);
+    bench.readings = wrong;
+    bench.run(ticks(0.05) + 1);
+    bench.readings = None;
+    bench.run(2);
+    bench.request(Request::Arm);
+    bench.readings = wrong;
+    bench.run(ticks(0.049));
+    assert_eq!(bench.state(), (Mode::Armed, Stop::None));
+}
+
 /// The zeros of both monitors are off by more than 8 % of the limits, 0.48 A and 0.12 A.
 #[test]
 fn device_whose_monitors_are_not_connected_cannot_be_armed() {
