@@ -5,8 +5,10 @@ use virtual_board::run::{CoreAccess, Setup};
 
 use crate::image::run_image;
 
-/// An image with every input.
+/// An image with every input but the edges and the reference encoder.
 const IMAGE: &str = "large-adaptive,current-monitor,index-pulse,supply-monitor";
+/// An image with these two.
+const WITH_EDGES: &str = "large-adaptive,edge-capture,reference";
 
 /// Some bits of a register.
 struct Field {
@@ -35,6 +37,8 @@ const GPIOC: u32 = 0x4002_0800;
 const GPIOD: u32 = 0x4002_0C00;
 const GPIOE: u32 = 0x4002_1000;
 const GPIOF: u32 = 0x4002_1400;
+const TIM1: u32 = 0x4001_0000;
+const TIM2: u32 = 0x4000_0000;
 const TIM3: u32 = 0x4000_0400;
 const TIM4: u32 = 0x4000_0800;
 const TIM5: u32 = 0x4000_0C00;
@@ -121,7 +125,8 @@ const AFTER_BOOT: &[Field] = &[
         0b01,
         "TIM8_CCER.CC4E, CC4P: active high",
     ),
-    // A halt disables the enables, and does not stop the watchdog.
+    // A probe reads RTT while the core sleeps. A halt disables the enables, and does not stop the watchdog.
+    field(DBGMCU + 0x04, (0, 1), 1, "DBGMCU_CR.DBG_SLEEP"),
     field(DBGMCU + 0x0C, (1, 1), 1, "DBGMCU_APB2_FZ.DBG_TIM8_STOP"),
     field(
         DBGMCU + 0x08,
@@ -210,14 +215,49 @@ const AFTER_BOOT: &[Field] = &[
     field(ADC3 + 0x10, (27, 3), 7, "ADC3_SMPR2.SMP9: 480 cycles"),
 ];
 
-#[test]
-fn registers_after_boot_are_those_of_the_manual() {
+/// Those of the image with edges and the reference encoder that others do not set.
+const OF_EDGES: &[Field] = &[
+    // Both edges of A xor B are captured, of a clock of 84 MHz that does not start again, after as many samples
+    // as the counter takes, without an interrupt.
+    field(GPIOA, (30, 2), 0b10, "GPIOA_MODER15: function"),
+    field(GPIOA + 0x24, (28, 4), 1, "GPIOA_AFR15: TIM2"),
+    field(GPIOB, (6, 2), 0b10, "GPIOB_MODER3: function"),
+    field(GPIOB + 0x20, (12, 4), 1, "GPIOB_AFR3: TIM2"),
+    field(TIM2, (0, 1), 1, "TIM2_CR1.CEN"),
+    field(TIM2, (8, 2), 0, "TIM2_CR1.CKD: by 1"),
+    field(TIM2 + 0x04, (7, 1), 1, "TIM2_CR2.TI1S: xor"),
+    field(TIM2 + 0x0C, (0, 15), 0, "TIM2_DIER: no interrupt"),
+    field(TIM2 + 0x18, (0, 4), 0b01, "TIM2_CCMR1.CC1S, IC1PSC: TI1"),
+    field(TIM2 + 0x18, (4, 4), 3, "TIM2_CCMR1.IC1F: 8 samples"),
+    field(
+        TIM2 + 0x20,
+        (0, 4),
+        0b1011,
+        "TIM2_CCER.CC1E, CC1P, CC1NP: both edges",
+    ),
+    field(TIM2 + 0x28, (0, 16), 0, "TIM2_PSC: 84 MHz"),
+    field(TIM2 + 0x2C, (0, 32), u32::MAX, "TIM2_ARR"),
+    // The timer of the reference encoder has 168 MHz: every other clock is as often as in the other two.
+    field(GPIOE, (18, 2), 0b10, "GPIOE_MODER9: function"),
+    field(GPIOE, (22, 2), 0b10, "GPIOE_MODER11: function"),
+    field(GPIOE + 0x24, (4, 4), 1, "GPIOE_AFR9: TIM1"),
+    field(GPIOE + 0x24, (12, 4), 1, "GPIOE_AFR11: TIM1"),
+    field(TIM1, (0, 1), 1, "TIM1_CR1.CEN"),
+    field(TIM1, (8, 2), 0, "TIM1_CR1.CKD: by 1"),
+    field(TIM1 + 0x08, (0, 3), 3, "TIM1_SMCR.SMS"),
+    field(TIM1 + 0x18, (0, 2), 1, "TIM1_CCMR1.CC1S: TI1"),
+    field(TIM1 + 0x18, (8, 2), 1, "TIM1_CCMR1.CC2S: TI2"),
+    field(TIM1 + 0x18, (4, 4), 5, "TIM1_CCMR1.IC1F: 8, by 2"),
+    field(TIM1 + 0x18, (12, 4), 5, "TIM1_CCMR1.IC2F: 8, by 2"),
+    field(TIM1 + 0x2C, (0, 16), 0xFFFF, "TIM1_ARR"),
+];
+
+/// The fields that differ from their table after the boot of an image.
+fn differing(features: &'static str, table: &[Field]) -> Vec<String> {
     let at = (0..).map(|k| 0.02 + 2e-4 * f64::from(k));
-    let loads = AFTER_BOOT
-        .iter()
-        .map(|field| CoreAccess::Load(field.address));
+    let loads = table.iter().map(|field| CoreAccess::Load(field.address));
     let run = run_image(
-        IMAGE,
+        features,
         &Setup {
             seconds: 0.06,
             commands: Vec::new(),
@@ -225,16 +265,22 @@ fn registers_after_boot_are_those_of_the_manual() {
             ..Setup::default()
         },
     );
-    assert_eq!(run.values.len(), AFTER_BOOT.len());
-    let wrong: Vec<_> = AFTER_BOOT
-        .iter()
-        .zip(&run.values)
-        .filter_map(|(field, word)| {
-            let (lowest, number) = field.bits;
-            let found = (word >> lowest) & (u32::MAX >> (32 - number));
-            let Field { value, what, .. } = field;
-            (found != *value).then(|| format!("{what} is {found:#x} instead of {value:#x}"))
-        })
-        .collect();
-    assert_eq!(wrong, [""; 0]);
+    assert_eq!(run.values.len(), table.len());
+    let differing = table.iter().zip(&run.values).filter_map(|(field, word)| {
+        let (lowest, number) = field.bits;
+        let found = (word >> lowest) & (u32::MAX >> (32 - number));
+        let Field { value, what, .. } = field;
+        (found != *value).then(|| format!("{what} is {found:#x} instead of {value:#x}"))
+    });
+    differing.collect()
+}
+
+#[test]
+fn registers_after_boot_are_those_of_the_manual() {
+    assert_eq!(differing(IMAGE, AFTER_BOOT), [""; 0]);
+}
+
+#[test]
+fn registers_of_edges_and_reference_encoder_are_those_of_the_manual() {
+    assert_eq!(differing(WITH_EDGES, OF_EDGES), [""; 0]);
 }
