@@ -131,6 +131,31 @@ fn settings_are_told_and_changed_over_the_link() {
     assert_eq!(told, expected.into_iter().flatten().collect::<Vec<_>>());
 }
 
+/// In scene off, with the amplifiers enabled.
+#[test]
+fn zeros_of_the_dac_act_once_they_are_set() {
+    let set = |setting: Setting, value| Command::Set {
+        setting: setting.number(),
+        value,
+    };
+    let commands = [
+        (0.05, ARM),
+        (0.10, set(Setting::ZeroLarge, 2061.0)),
+        (0.15, set(Setting::ZeroSmall, 2035.0)),
+    ];
+    let run = commanded(0.2, &commands, Setup::default());
+    let codes_at = |at_s: f64| {
+        let mut ticks = run.ticks.iter();
+        let tick = ticks.find(|tick| tick.at_ns as f64 * 1e-9 >= at_s);
+        let tick = tick.expect("a tick");
+        assert_eq!(tick.enabled, [true; 2], "{at_s} s");
+        tick.codes
+    };
+    assert_eq!(codes_at(0.099), [Some(MIDDLE); 2]);
+    assert_eq!(codes_at(0.149), [Some(2061), Some(MIDDLE)]);
+    assert_eq!(codes_at(0.199), [Some(2061), Some(2035)]);
+}
+
 #[test]
 fn settings_are_stored_at_rest_alone() {
     let outcomes =
