@@ -155,6 +155,26 @@ fn lapsed_enables_stay_off_when_the_counter_is_restarted() {
     assert_eq!(state(&run, 0.3), (Mode::Safe, Stop::AmplifierFault));
 }
 
+/// The counter runs while the amplifiers are disabled, so that it may be at any count when they are enabled.
+#[test]
+fn enables_have_their_whole_time_when_they_begin() {
+    // The store follows a control task. At the next one, which may be the one that arms, the counter is some 40 us
+    // before the match.
+    for k in -2..12 {
+        let run = run(&Setup {
+            seconds: 0.12,
+            commands: vec![(0.1, Command::Arm)],
+            accesses: vec![(0.1 + 1e-4 * f64::from(k), CoreAccess::Store(COUNTER, 1475))],
+            ..Setup::default()
+        });
+        let after = changes(&run, 0.05);
+        let [(_, enables)] = after[..] else {
+            panic!("{k}: {after:?}")
+        };
+        assert_eq!(enables, [true; 2], "{k}");
+    }
+}
+
 /// Neither a command nor a store to the timer enables the amplifiers while the loop is open.
 #[test]
 fn open_interlock_cannot_be_overridden() {
