@@ -1,7 +1,7 @@
 //! Time stamps of the large encoder's edges, captured by the image and known to the board.
 
 use recordings::telemetry::Frame;
-use virtual_board::run::{Outcome, Setup};
+use virtual_board::run::{CoreAccess, Outcome, Setup};
 
 use crate::image::run_image;
 
@@ -22,10 +22,20 @@ struct Stamp {
 
 /// A run with a signal generator of this many edges a second on the large encoder's lines.
 fn generated(hz: f64, seconds: f64) -> (Outcome, Vec<Stamp>) {
+    generated_with(hz, seconds, Vec::new())
+}
+
+/// As [`generated`], with accesses of the core.
+fn generated_with(
+    hz: f64,
+    seconds: f64,
+    accesses: Vec<(f64, CoreAccess)>,
+) -> (Outcome, Vec<Stamp>) {
     let setup = Setup {
         seconds,
         generator_hz: Some(hz),
         commands: Vec::new(),
+        accesses,
         ..Setup::default()
     };
     let run = run_image("edge-capture", &setup);
@@ -122,4 +132,22 @@ fn age_of_an_edge_increases_without_edges() {
     assert!(stamps.iter().all(|stamp| stamp.tick_s > 0.25));
     let oldest = stamps.iter().map(|stamp| stamp.age_s).fold(0.0, f64::max);
     assert!((oldest - 0.25).abs() < 2e-3, "{oldest}");
+}
+
+/// Counter of TIM4.
+const COUNTER: u32 = 0x4000_0824;
+
+/// Edges at 0.25 s, 0.5 s and 0.75 s. The stamp of the edge before is that of another count.
+#[test]
+fn count_that_changes_without_an_edge_has_no_stamp_until_the_next_one() {
+    let moved = vec![(0.6, CoreAccess::Store(COUNTER, 100))];
+    let (_, stamps) = generated_with(4.0, 0.9, moved);
+    let of = |from_s: f64, to_s: f64| {
+        let times = stamps.iter().map(|stamp| stamp.tick_s);
+        times.filter(|s| (from_s..to_s).contains(s)).count()
+    };
+    // A frame a millisecond.
+    assert!(of(0.51, 0.59) >= 79);
+    assert_eq!(of(0.602, 0.749), 0);
+    assert!(of(0.76, 0.89) >= 125);
 }
