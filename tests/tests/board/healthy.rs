@@ -11,8 +11,10 @@ use virtual_board::run::{
     AMPS_PER_CODE, CoreAccess, DacError, LEAST_LOAD_OHM, Outcome, RATE_HZ, Setup, on_board,
 };
 use virtual_board::scene::{press, stiffness};
+use virtual_board::trace::Kind;
 
 use crate::image::{SETTLED_S, free_air, image, of_scene, run};
+use crate::second_core::{HOLDING, records};
 
 #[test]
 fn the_image_boots_and_closes_the_loop_at_10_khz() {
@@ -75,6 +77,38 @@ fn currents_are_zero_before_the_amplifiers_are_enabled() {
         .iter()
         .filter(|moment| moment.currents[0] != 0.0);
     assert!(flowing.count() > 50_000);
+}
+
+/// The enables of both channels in [`DAC_CONTROL`].
+const CHANNELS: u32 = 1 << 16 | 1;
+
+/// A channel that is switched on with the code of a reset would command the largest current until the first
+/// control task.
+#[test]
+fn dac_has_the_codes_of_no_current_before_it_is_switched_on() {
+    let run = run(&Setup {
+        seconds: 0.01,
+        commands: Vec::new(),
+        trace: true,
+        ..Setup::default()
+    });
+    let mut codes = [None; 2];
+    for (kind, _, address, value, _) in records(&run.trace) {
+        if kind != Kind::Write as u8 {
+            continue;
+        }
+        if address == DAC_CONTROL && value & CHANNELS != 0 {
+            break;
+        }
+        for (code, _) in codes
+            .iter_mut()
+            .zip(HOLDING)
+            .filter(|(_, at)| *at == address)
+        {
+            *code = Some(value);
+        }
+    }
+    assert_eq!(codes, [Some(2048); 2]);
 }
 
 /// Largest force that the hand feels after the first 0.4 s, N.

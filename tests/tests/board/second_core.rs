@@ -14,7 +14,7 @@ use crate::image::{image, of_scene, run};
 const CONTROL: u16 = 16 + 50;
 /// Counters of TIM4 (large encoder) and TIM3; holding registers of both channels, right aligned.
 const COUNTERS: [u32; 2] = [0x4000_0824, 0x4000_0424];
-const HOLDING: [u32; 2] = [0x4000_7408, 0x4000_7414];
+pub(crate) const HOLDING: [u32; 2] = [0x4000_7408, 0x4000_7414];
 
 /// A record: kind, number of the exception, address, value, and where the record begins.
 type Record = (u8, u16, u32, u32, usize);
