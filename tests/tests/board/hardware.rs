@@ -47,6 +47,23 @@ fn debug_settings_are_cleared_while_the_image_runs() {
     assert_eq!(last(&run), (Mode::Running, Stop::None));
 }
 
+/// A system reset leaves them, and the start may last half a second.
+#[test]
+fn debug_settings_are_cleared_at_the_start() {
+    let run = run(&Setup {
+        seconds: 0.12,
+        accesses: vec![
+            (0.1, CoreAccess::Store(FREEZE, WATCHDOGS | TIMERS)),
+            (0.1001, CoreAccess::Store(RESET.0, RESET.1)),
+            (0.1004, CoreAccess::Load(FREEZE)),
+        ],
+        ..Setup::default()
+    });
+    assert_eq!(run.restarts.len(), 1);
+    let freezes = run.values.last().expect("a value");
+    assert_eq!(freezes & (WATCHDOGS | TIMERS), 0);
+}
+
 /// Whoever sets them ever again holds the outputs in the next halt.
 #[test]
 fn arming_is_refused_while_debug_settings_come_back() {
@@ -163,6 +180,28 @@ fn a_panic_commands_no_current() {
             (kind == Kind::Write as u8 && address == BOTH_CHANNELS).then_some(value)
         });
     assert_eq!(writes.collect::<Vec<_>>(), [NO_CURRENT; 2]);
+}
+
+/// A control task would command its currents again.
+#[test]
+fn no_control_task_begins_between_a_panic_and_the_reset() {
+    const AT_S: f64 = 0.2;
+    let run = run(&Setup {
+        seconds: 0.25,
+        faults: vec![(AT_S, Fault::Panic)],
+        ..Setup::default()
+    });
+    let [restart] = &run.restarts[..] else {
+        panic!("{:?}", run.restarts)
+    };
+    let off_s = AT_S + run.off_after(AT_S).expect("off");
+    // A step of the lockstep.
+    let between = off_s + 1e-5..restart.at_s;
+    let begins = run.ticks.iter().map(|tick| tick.at_ns as f64 * 1e-9);
+    let late: Vec<_> = begins.filter(|at_s| between.contains(at_s)).collect();
+    assert_eq!(late, [0.0; 0]);
+    // The watchdog waits 28 ms.
+    assert!(restart.at_s - off_s > 0.02, "{} s", restart.at_s);
 }
 
 #[test]
@@ -287,6 +326,30 @@ fn crystal_that_starts_later_restarts_the_board() {
         "{late} s, {}",
         restart.cause
     );
+}
+
+/// `RCC_CR` of a board that runs on its internal oscillator, with the crystal off and on.
+const CLOCK_CONTROL: u32 = 0x4002_3800;
+const CRYSTAL_OFF: u32 = 0x0104_0081;
+const CRYSTAL_ON: u32 = 0x0105_0081;
+
+/// The 0.1 s begin again with each interruption.
+#[test]
+fn crystal_that_is_interrupted_restarts_the_board_later() {
+    let run = run(&Setup {
+        seconds: 1.0,
+        crystal_from_s: 0.8,
+        accesses: vec![
+            (0.85, CoreAccess::Store(CLOCK_CONTROL, CRYSTAL_OFF)),
+            (0.86, CoreAccess::Store(CLOCK_CONTROL, CRYSTAL_ON)),
+        ],
+        ..Setup::default()
+    });
+    let [restart] = &run.restarts[..] else {
+        panic!("{:?}", run.restarts)
+    };
+    let late = restart.at_s - 0.86;
+    assert!((0.099..0.102).contains(&late), "{late} s");
 }
 
 /// Option keys, option control register, and the core's reset request.
