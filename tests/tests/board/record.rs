@@ -15,6 +15,7 @@ use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::{free_air, image, of_scene, run, run_image};
+use crate::link::{of_port, telemetry};
 
 /// The recording made of raw bytes, as `host-sim record --image` makes it.
 fn recorded(bytes: &[u8], rate_hz: Option<f64>) -> String {
@@ -234,4 +235,23 @@ fn frames_dropped_by_rtt_are_counted() {
     let [missing, drops] = missing(&run);
     assert!((150..300).contains(&missing), "{missing} are missing");
     assert_eq!(drops, missing);
+    // The port, which lost none, says so too.
+    let frames = telemetry(&of_port(&run).0).frames;
+    assert_eq!(frames.last().map(|frame| frame.drops), Some(drops));
+}
+
+/// The probe reads nothing from 20 ms to 320 ms, and the watchdog resets the chip 28 ms after the panic.
+#[test]
+fn message_of_a_panic_waits_for_place_in_the_log() {
+    let run = run(&Setup {
+        seconds: 0.4,
+        faults: vec![(0.02, Fault::DrainPause), (0.3, Fault::Panic)],
+        ..Setup::default()
+    });
+    assert_eq!(run.restarts.len(), 1);
+    let log = &run.telemetry.log;
+    assert!(
+        log.iter().any(|said| said.contains("panicked at")),
+        "{log:?}"
+    );
 }
