@@ -6,8 +6,10 @@ use haptic_control::Stop;
 use virtual_board::fault::Fault;
 use virtual_board::flash::{Change, FlashTimes, Sectors};
 use virtual_board::run::{ControlTick, CoreAccess, Outcome, Setup};
+use virtual_board::trace::Kind;
 
 use crate::link::of_port;
+use crate::second_core::records;
 use crate::settings::{commanded, stored};
 
 /// Bytes of a record: its number, the settings, the checksum.
@@ -198,6 +200,31 @@ fn store_leaves_the_caches_of_the_flash_on() {
         panic!("{:?}", run.values)
     };
     assert_eq!((before & CACHES, after), (CACHES, before));
+}
+
+/// The data cache would keep bytes of before. It is reset while it is off, and on again afterwards (RM0090,
+/// `DCRST` of `FLASH_ACR`).
+#[test]
+fn store_resets_the_data_cache() {
+    let run = commanded(
+        0.2,
+        &[(0.05, serial(77.0)), (0.10, Command::Store)],
+        Setup {
+            trace: true,
+            ..Setup::default()
+        },
+    );
+    assert_eq!(stored(&run), [Saved::Stored]);
+    let writes = records(&run.trace).into_iter();
+    let cache: Vec<_> = writes
+        .filter(|(kind, _, address, ..)| *kind == Kind::Write as u8 && *address == ACCESS_CONTROL)
+        .map(|(_, _, _, value, _)| (value >> 10 & 1, value >> 12 & 1))
+        .collect();
+    let [.., off, reset, done, on] = cache[..] else {
+        panic!("{cache:?}")
+    };
+    // Its enable and its reset.
+    assert_eq!([off, reset, done, on], [(0, 0), (0, 1), (0, 0), (1, 0)]);
 }
 
 /// A part of what a byte or a sector passes through while its bits change.
