@@ -1,6 +1,7 @@
 //! A serial port whose line is disturbed, flooded or stopped.
 
 use haptic_control::{Mode, SceneKind, Stop};
+use object::{Object as _, ObjectSymbol as _};
 use simulation::device::Device;
 use virtual_board::command::Command;
 use virtual_board::port::LineErrors;
@@ -88,6 +89,10 @@ fn noise_and_framing_errors_leave_control_as_it_is() {
             framing: 300_000,
         },
         LineErrors::EVERY_BYTE,
+        LineErrors {
+            noise: 1_000_000,
+            framing: 0,
+        },
     ] {
         let run = run(&Setup {
             seconds: 0.9,
@@ -101,6 +106,27 @@ fn noise_and_framing_errors_leave_control_as_it_is() {
         assert!((1_000..=2_010).contains(&found), "{errors:?}: {found}");
         assert_eq!(lost, 0);
     }
+}
+
+/// `USART3_CR3`, and the requests of DMA for what is sent and for what is received.
+const REQUESTS: u32 = 0x4000_4814;
+const TO_SEND: u32 = 1 << 7;
+const RECEIVED: u32 = 1 << 6;
+
+/// DMA that takes no byte for 10 ms of a flood: each look finds the overrun, and reception goes on afterwards.
+#[test]
+fn overrun_of_what_is_received_is_counted() {
+    let mut setup = commanded_by_port(0.9, 0.9);
+    setup.port.push((0.31, vec![0xA5; 3_000]));
+    setup.accesses = vec![
+        (0.315, CoreAccess::Store(REQUESTS, TO_SEND)),
+        (0.325, CoreAccess::Store(REQUESTS, TO_SEND | RECEIVED)),
+    ];
+    let run = run(&setup);
+    let [found, lost] = port_faults(&run).expect("faults");
+    assert!((90..=110).contains(&found), "{found}");
+    assert_eq!(lost, 0);
+    assert_eq!(end(&run), (Mode::Running, Stop::None));
 }
 
 /// Commands once a millisecond, of which some arrive with framing errors, and halves of commands
@@ -157,6 +183,22 @@ fn stopped_reception_is_started_again() {
     assert_eq!(run.values, [0x2000_0000]);
     assert_eq!(end(&run), (Mode::Running, Stop::None));
     assert_eq!(port_faults(&run), Some([1, 0]));
+}
+
+/// The ring has bytes of before from end to end, which would be commands again.
+#[test]
+fn reception_that_is_started_again_takes_no_byte_twice() {
+    let mut setup = commanded_by_port(0.9, 0.9);
+    // 1100 bytes; the ring has 1024.
+    let commands = frame(Command::Estimator(99)).repeat(100);
+    setup.port.push((0.2, commands));
+    // The second of both buffers, which are the same, is in use then.
+    let stop = CoreAccess::Store(RECEIVE_BUFFER + 4, 0x2000_0000);
+    setup.accesses = vec![(0.32, stop)];
+    let run = run(&setup);
+    assert_eq!(port_faults(&run), Some([1, 0]));
+    let counts = rejected(&run).expect("counts");
+    assert_eq!((counts.unknown, counts.garbage), (100, 0));
 }
 
 /// `DMA_S3PAR`: address to which the stream sends; the data register of USART3, and one without a register.
@@ -253,4 +295,36 @@ fn flood_of_commands_leaves_the_port_its_share() {
         ..Setup::default()
     });
     is_armed_and_disarmed_in_time(&run);
+}
+
+/// The control block of RTT, and where the up channel, the one of the link and the down channel have the index
+/// of their writer and that of their reader.
+const CONTROL_BLOCK: &str = "_SEGGER_RTT";
+const INDICES: [u32; 3] = [24 + 12, 48 + 12, 72 + 12];
+
+/// A probe that has lost its connection writes indices that no ring has: control and port go on.
+#[test]
+fn indices_of_rtt_beyond_its_rings_leave_control_as_it_is() {
+    let file = object::File::parse(image("").elf()).expect("an image");
+    let block = file
+        .symbols()
+        .find(|symbol| symbol.name() == Ok(CONTROL_BLOCK))
+        .expect("the control block");
+    let block = u32::try_from(block.address()).expect("an address");
+    let stores = INDICES.into_iter().flat_map(|at| [at, at + 4]).zip(0..);
+    let accesses = stores.map(|(at, k)| {
+        let store = CoreAccess::Store(block + at, u32::MAX - k);
+        (0.2 + 1e-3 * f64::from(k), store)
+    });
+    let setup = Setup {
+        accesses: accesses.collect(),
+        ..commanded_by_port(0.5, 0.5)
+    };
+    let run = on_board(image(""), &setup, |_| ()).expect("a run");
+    assert_eq!(run.restarts, []);
+    let frames = telemetry(&of_port(&run).0).frames;
+    let last = frames.last().expect("frames");
+    assert!(last.tick > 4_900, "{}", last.tick);
+    assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
+    assert_eq!(last.overruns, 0);
 }
