@@ -1,7 +1,11 @@
-use estimator_core::{Confidence as _, Count, Sample, Side, VelocityEstimator as _};
+use estimator_core::{
+    Confidence as _, Count, ObserverDesign, Sample, Side, VelocityEstimator as _,
+};
+use firmware_app::ammeter::{Ammeter, Measure};
+use firmware_app::config::{DEVICE, RATE};
 use firmware_app::large::{
-    ADAPTIVE, ADAPTIVE_EDGE, Adaptive, AdaptiveEdge, BOTH, Both, FILTER, Filter, LargeEstimator,
-    Learnable as _, WINDOW, Window,
+    ADAPTIVE, ADAPTIVE_EDGE, Adaptive, AdaptiveEdge, BOTH, Both, FILTER, Filter, LEARNING,
+    LargeEstimator, Learnable as _, WINDOW, Window,
 };
 
 #[test]
@@ -62,4 +66,20 @@ fn learned_parameters_are_those_of_the_estimator() {
     assert_eq!(learned, ADAPTIVE.parameter_errors(&state));
     assert_eq!(learned.deviations(), Some(learned));
     assert_ne!(learned, Default::default());
+}
+
+/// A current that is measured has the lag of the amplifier in it.
+#[test]
+fn observer_of_commanded_currents_alone_has_the_lag_of_the_amplifier() {
+    let commanded = DEVICE.coupled_motor();
+    assert!(commanded.amplifier_lag > 0.0);
+    let mut measured = commanded;
+    measured.amplifier_lag = 0.0;
+    let is_designed_for = [commanded, measured].map(|motor| {
+        let uncertainty = tuned::uncertainty(LEARNING[0], RATE);
+        let design = ObserverDesign::new(&motor, RATE, &uncertainty);
+        design.adaptive().build().expect("a design") == ADAPTIVE
+    });
+    let measures = <Ammeter as Measure>::WANTED;
+    assert_eq!(is_designed_for, [!measures, measures]);
 }
