@@ -238,7 +238,10 @@ fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
             &["--rate", "599", "--lines", "1024"],
             "--rate 599: a closed loop needs a control rate of 600 to 100000 Hz",
         ),
-        (&["--lines", "3"], "'--lines <N>': 3 is not in 4..=1000000"),
+        (
+            &["--lines", "3"],
+            "'--lines <N>': must be from 4 to 1000000",
+        ),
         (&["--lines", "many"], "--lines"),
         (&["--set", "pll.bandwidth=1"], "no parameter 'bandwidth'"),
         (&["--device", "none.toml"], "none.toml: cannot read"),
