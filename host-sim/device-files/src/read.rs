@@ -108,6 +108,25 @@ fn shortened_quotes(text: &str) -> String {
     parts.collect()
 }
 
+/// Whether `value` is meant as a number and is none: it begins as one, and the parser's `error` is about quotes or
+/// digits.
+fn is_meant_as_number(value: &str, error: &toml::de::Error) -> bool {
+    let digits = value.trim_start_matches(['+', '-', '.']);
+    let reasons = [
+        "string values must be quoted",
+        "unexpected key or value",
+        "invalid float",
+    ];
+    let parts = [
+        "invalid mantissa",
+        "invalid fraction",
+        "invalid exponent",
+        "unexpected leading zero",
+    ];
+    digits.starts_with(|c: char| c.is_ascii_digit())
+        && (reasons.iter().chain(&parts)).any(|reason| error.message().starts_with(reason))
+}
+
 /// The parser's error in one line, with the line's number and its key.
 pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
     let what = error
@@ -133,13 +152,19 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
     if key.is_empty() {
         return format!("line {number}: {what}");
     }
-    let has_no_value = line
-        .split_once('=')
-        .is_some_and(|(_, value)| value.split('#').next().unwrap_or("").trim().is_empty());
+    let value =
+        (line.split_once('=')).map(|(_, value)| value.split('#').next().unwrap_or("").trim());
+    let has_no_value = value == Some("");
     let what = match key.starts_with("[[") && what.starts_with("invalid type: map") {
         true => "not a list of sections; write its name between single brackets".to_owned(),
         false if has_no_value => "no value; write one after '=', or remove the line".to_owned(),
-        false => what,
+        false => match value.filter(|value| is_meant_as_number(value, error)) {
+            Some(value) => format!(
+                "'{}' is no number; write it as 0.015 or 1.5e-2, with a point and without a unit",
+                shortened(value)
+            ),
+            None => what,
+        },
     };
     format!("line {number}, {key}: {what}")
 }

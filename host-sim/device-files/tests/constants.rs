@@ -92,6 +92,37 @@ fn errors_of_a_device_file_name_line_or_key_and_remedy() {
             "[large]\ncounts_per_rev = 3\n",
             &["line 2, large.counts_per_rev = 3: must be from 16 to 4000000"],
         ),
+        (
+            "[large]\ninertia_kg_m2 = 140 g.cm2 # rotor\n",
+            &[
+                "line 2, inertia_kg_m2: '140 g.cm2' is no number; write it as 0.015 or 1.5e-2, with a point and \
+                 without a unit",
+            ],
+        ),
+        (
+            "large.inertia_kg_m2 = 1,5e-5\n",
+            &["line 1, large.inertia_kg_m2: '1,5e-5' is no number; write"],
+        ),
+        (
+            "[large]\ncoulomb_nm = .004\n",
+            &["line 2, coulomb_nm: '.004' is no number; write it as 0.015"],
+        ),
+        (
+            "[large]\ncoulomb_nm = 4.e-3\n",
+            &["line 2, coulomb_nm: '4.e-3' is no number"],
+        ),
+        (
+            "[large]\ncoulomb_nm = 4e\n",
+            &["line 2, coulomb_nm: '4e' is no number"],
+        ),
+        (
+            "[large]\ncounts_per_rev = 04096\n",
+            &["line 2, counts_per_rev: '04096' is no number"],
+        ),
+        (
+            "[large]\ncoulomb_nm = heavy\n",
+            &["line 2, coulomb_nm: string values must be quoted"],
+        ),
         ("[amplifier\n", &["line 1, [amplifier: "]),
         (
             "[small]\ncoulomb_nm = 0\n[[large]]\ncoulomb_nm = 0\n",
