@@ -102,6 +102,13 @@ fn open(path: &Path) -> Result<File, String> {
 }
 
 fn read(path: &Path) -> Result<Vec<Done>, String> {
+    // A device may have no end.
+    if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        return Err(format!(
+            "{}: is no file; choose the name of a file",
+            path.display()
+        ));
+    }
     let text = match fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -171,5 +178,14 @@ mod tests {
         fs::write(&path, "{").unwrap();
         let said = run(1).unwrap_err();
         assert!(said.contains("kept.jsonl: line 1: "), "{said}");
+        // Reading a device without an end would not end.
+        #[cfg(target_os = "linux")]
+        for place in ["/dev/full", "/"] {
+            let said = read(Path::new(place)).unwrap_err();
+            assert_eq!(
+                said,
+                format!("{place}: is no file; choose the name of a file")
+            );
+        }
     }
 }
