@@ -296,7 +296,7 @@ impl Files {
                 let (motor, rate, clock) = (&setup.motor(), c::Hertz(setup.rate_hz), c::Hertz(setup.edge_clock_hz));
                 let values = [{given}];
                 let p = estimator_catalogue::design::{}::Parameters::from_values(&values);
-                design::write(into, &estimator_catalogue::design::{}::ROW, &values, || {design})
+                design::write(into, setup, &estimator_catalogue::design::{}::ROW, &values, || {design})
             }}\n",
             row.name, c.capacity, row.id, row.id,
         )

@@ -52,10 +52,22 @@ const OUT_OF_RANGE: i32 = 1;
 /// Status of the first error of [`DesignError::ALL`].
 const FIRST_ERROR: i32 = 2;
 
-/// Writes the design if every parameter is in its range and the design is possible. Otherwise
+impl limpid_setup_t {
+    /// Whether encoder and rate can scale a velocity, also where the design does not read them.
+    fn checked(&self) -> Result<(), DesignError> {
+        match self.rate_hz > 0.0 && self.rate_hz.is_finite() {
+            false => Err(DesignError::RATE),
+            true if self.counts_per_rev == 0 => Err(DesignError::COUNTS_PER_REV),
+            true => Ok(()),
+        }
+    }
+}
+
+/// Writes the design if every parameter is in its range and the design is possible for `setup`. Otherwise
 /// `into` is not written.
 pub(crate) fn write<E>(
     into: &mut MaybeUninit<E>,
+    setup: &limpid_setup_t,
     row: &Row,
     values: &[f64],
     design: impl FnOnce() -> Result<E, DesignError>,
@@ -64,7 +76,8 @@ pub(crate) fn write<E>(
     if !row.parameters.iter().zip(values).all(accepted) {
         return OUT_OF_RANGE;
     }
-    match design() {
+    // An error of the design says more of a rate.
+    match design().and_then(|design| setup.checked().map(|()| design)) {
         Ok(design) => {
             into.write(design);
             0

@@ -78,6 +78,12 @@ int main(void)
     WITH(LIMPID_ERROR_RATE_FOR_CURRENT, observer, torque_constant, 1e9, OBSERVER);
     WITH(LIMPID_ERROR_RATE_FOR_FRICTION, observer, coulomb_friction, 1e9, OBSERVER);
     WITHOUT(LIMPID_ERROR_RATE_OF_BANK, imm, rate_hz, 50.0);
+    WITHOUT(LIMPID_ERROR_RATE, finite_difference, rate_hz, 0.0);
+    WITHOUT(LIMPID_ERROR_RATE, finite_difference, rate_hz, no_number.cutoff_hz);
+    WITHOUT(LIMPID_ERROR_RATE, finite_difference, rate_hz, -1000.0);
+    WITHOUT(LIMPID_ERROR_COUNTS_PER_REV, finite_difference, counts_per_rev, 0u);
+    WITHOUT(LIMPID_ERROR_COUNTS_PER_REV, imm, counts_per_rev, 0u);
+    WITH(LIMPID_ERROR_COUNTS_PER_REV, low_pass, counts_per_rev, 0u, low);
     WITHOUT(LIMPID_ERROR_CLOCK, m_over_t, edge_clock_hz, 500.0);
     WITH(LIMPID_ERROR_CUTOFF, low_pass, rate_hz, 1000.0, high);
     WITH(LIMPID_ERROR_BANDWIDTH, pll, rate_hz, 1000.0, fast);
