@@ -19,7 +19,7 @@ namespace limpid {
 #define LIMPID_CLASS(name)                                                                     \
     class name {                                                                               \
     public:                                                                                    \
-        explicit name(const limpid_##name##_t &parameters) : parameters(parameters) {}         \
+        explicit name(const limpid_##name##_t &designed) : parameters(designed) {}             \
         explicit name(const limpid_##name##_t &&) = delete;                                    \
                                                                                                \
         /* Sets the state to rest at this sample. The first update does so too. */             \

@@ -25,7 +25,7 @@
 
 class LimpidSensor : public Sensor {
 public:
-    LimpidSensor(Sensor &inner, uint32_t counts_per_rev) : inner(inner), counts_per_rev(counts_per_rev) {}
+    LimpidSensor(Sensor &sensor, uint32_t counts) : inner(sensor), counts_per_rev(counts) {}
 
     void init() override
     {
@@ -41,7 +41,7 @@ public:
         const uint32_t now = micros();
         const uint32_t count = counted();
         /* The period of the parameters is a millisecond. */
-        const float period = (float)(now - updated) * 1e-3f;
+        const float period = static_cast<float>(now - updated) * 1e-3f;
         if (!started) {
             const limpid_sample_t first = limpid_count(count);
             limpid_imm_start(&limpid_imm_parameters, &state, &first);
@@ -84,11 +84,11 @@ private:
     uint32_t counted()
     {
         const float turn = inner.getMechanicalAngle() * (1.0f / 6.28318531f);
-        const float nearest = turn * (float)counts_per_rev + 0.5f;
+        const float nearest = turn * static_cast<float>(counts_per_rev) + 0.5f;
         /* The angle of some sensors is negative below 0, where a conversion rounds up. */
-        int32_t within = (int32_t)nearest;
-        if ((float)within > nearest) within -= 1;
-        return (uint32_t)inner.getFullRotations() * counts_per_rev + (uint32_t)within;
+        int32_t within = static_cast<int32_t>(nearest);
+        if (static_cast<float>(within) > nearest) within -= 1;
+        return static_cast<uint32_t>(inner.getFullRotations()) * counts_per_rev + static_cast<uint32_t>(within);
     }
 
     Sensor &inner;

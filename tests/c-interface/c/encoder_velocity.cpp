@@ -18,7 +18,7 @@ void interrupts() {}
 SerialPort Serial;
 
 void SerialPort::begin(long) {}
-void SerialPort::print(float number, int) { printf("%.9g\n", (double)number); }
+void SerialPort::print(float number, int) { printf("%.9g\n", static_cast<double>(number)); }
 void SerialPort::println(const char *) {}
 
 #include "EncoderVelocity.ino"

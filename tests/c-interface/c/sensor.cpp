@@ -32,15 +32,15 @@ int main()
     LimpidSensor &sensor = *new (storage) LimpidSensor(given, 4096);
     unsigned long long now;
     bool started = false;
-    printf("%.9g %.9g\n", (double)sensor.getVelocity(), (double)sensor.getVelocityDeviation());
+    printf("%.9g %.9g\n", static_cast<double>(sensor.getVelocity()), static_cast<double>(sensor.getVelocityDeviation()));
     while (scanf("%llu %f", &now, &given.shown) == 2) {
-        clock_now = (uint32_t)now;
+        clock_now = static_cast<uint32_t>(now);
         if (started && now > 0)
             sensor.update();
         else
             sensor.init();
         started = true;
-        printf("%.9g %.9g\n", (double)sensor.getVelocity(), (double)sensor.getVelocityDeviation());
+        printf("%.9g %.9g\n", static_cast<double>(sensor.getVelocity()), static_cast<double>(sensor.getVelocityDeviation()));
     }
     return 0;
 }

@@ -32,7 +32,7 @@ void loop()
 {
     static uint32_t due = micros();
     static int ticks = 0;
-    const int32_t late = (int32_t)(micros() - due);
+    const int32_t late = static_cast<int32_t>(micros() - due);
     if (late < 0) return;
     due += 1000;
 

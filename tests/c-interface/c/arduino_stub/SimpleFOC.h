@@ -12,8 +12,8 @@ class Sensor {
 public:
     virtual ~Sensor() {}
     virtual float getMechanicalAngle() { return angle; }
-    virtual float getAngle() { return (float)turns * 6.28318531f + angle; }
-    virtual double getPreciseAngle() { return (double)getAngle(); }
+    virtual float getAngle() { return static_cast<float>(turns) * 6.28318531f + angle; }
+    virtual double getPreciseAngle() { return static_cast<double>(getAngle()); }
     virtual float getVelocity() { return 0.0f; }
     virtual int32_t getFullRotations() { return turns; }
     virtual int needsSearch() { return 0; }

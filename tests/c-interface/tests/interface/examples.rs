@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use c_interface::{CORTEX_M4F, Compiler, compiled, folder, missing};
-use limpid_dist::{BOARDS, COMPUTER, arduino, build, header, milliseconds, write};
+use limpid_dist::{BOARDS, COMPUTER, arduino, build, header, milliseconds};
 
 const CPP11: Compiler = Compiler {
     program: "g++",
@@ -19,6 +19,10 @@ const CPP11: Compiler = Compiler {
         "-Wall",
         "-Wextra",
         "-Werror",
+        "-pedantic",
+        "-Wconversion",
+        "-Wold-style-cast",
+        "-Wshadow",
     ],
 };
 
@@ -32,8 +36,8 @@ fn the_example_for_stm32_compiles() {
         return;
     }
     let folder = folder("stm32");
-    write(
-        &folder.join("parameters.h"),
+    std::fs::write(
+        folder.join("parameters.h"),
         milliseconds().expect("a design").as_bytes(),
     )
     .expect("target");
@@ -46,6 +50,8 @@ fn the_example_for_stm32_compiles() {
 #[test]
 fn the_library_for_arduino_has_an_object_per_processor_and_its_examples_compile() {
     let folder = folder("Limpid");
+    // An earlier run may have left what no run replaces.
+    std::fs::remove_dir_all(&folder).expect("just made");
     arduino(&folder).expect("the folder");
     let properties = std::fs::read_to_string(folder.join("library.properties")).expect("written");
     let version = format!("version={}\n", env!("CARGO_PKG_VERSION"));
@@ -147,8 +153,8 @@ fn program(source: &str, name: &str) -> Option<PathBuf> {
         return None;
     }
     let folder = folder(name);
-    write(
-        &folder.join("LimpidMilliseconds.h"),
+    std::fs::write(
+        folder.join("LimpidMilliseconds.h"),
         milliseconds().expect("a design").as_bytes(),
     )
     .expect("target");
@@ -248,8 +254,8 @@ fn class_refuses_parameters_that_are_a_temporary() {
         return;
     }
     let folder = folder("temporary");
-    write(
-        &folder.join("LimpidMilliseconds.h"),
+    std::fs::write(
+        folder.join("LimpidMilliseconds.h"),
         milliseconds().expect("a design").as_bytes(),
     )
     .expect("target");

@@ -10,17 +10,18 @@ use estimator_core::Sample;
 use limpid_dist::{COMPUTER, build};
 use pareto::traces::{self, RATES_HZ};
 
-const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
-
 const C99: Compiler = Compiler {
     program: "gcc",
     arguments: &[
         "-std=c99",
         "-O2",
-        WARNINGS[0],
-        WARNINGS[1],
-        WARNINGS[2],
-        WARNINGS[3],
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        "-Wconversion",
+        "-Wsign-conversion",
+        "-Wdouble-promotion",
     ],
 };
 
@@ -31,10 +32,13 @@ const CPP17: Compiler = Compiler {
         "c++",
         "-std=c++17",
         "-O2",
-        WARNINGS[0],
-        WARNINGS[1],
-        WARNINGS[2],
-        WARNINGS[3],
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        "-Wconversion",
+        "-Wsign-conversion",
+        "-Wdouble-promotion",
     ],
 };
 
