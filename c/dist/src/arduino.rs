@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use catalogue::estimators::{Kind, Setup};
 use estimator_core::Hertz;
+use terminal::failure::Failure;
 
-use crate::libraries::{BOARDS, build, copy, write};
+use crate::libraries::{BOARDS, bytes, place};
 
 /// Files that are not generated.
 fn sources() -> PathBuf {
@@ -28,40 +29,51 @@ pub fn milliseconds() -> Result<String, String> {
         .map_err(|failure| failure.to_string())
 }
 
-/// Writes the folder, ready to zip: sources, header, a library per processor, examples.
+/// Writes the folder, ready to zip: sources, header, a library per processor, examples. Nothing is written unless all
+/// of them are built.
 ///
 /// # Errors
-/// One line that names the file or the target.
-pub fn arduino(into: &Path) -> Result<(), String> {
-    copy_folder(&sources(), into)?;
-    write(&into.join("src/limpid.h"), crate::header()?.as_bytes())?;
-    write(
-        &into.join("src/LimpidMilliseconds.h"),
-        milliseconds()?.as_bytes(),
-    )?;
+/// [`Failure::Input`] that names the file or the target.
+pub fn arduino(into: &Path) -> Result<(), Failure> {
+    let mut texts = Vec::new();
+    read_folder(&sources(), "", &mut texts)?;
+    texts.push(("src/limpid.h".to_owned(), crate::header()?));
+    texts.push(("src/LimpidMilliseconds.h".to_owned(), milliseconds()?));
+    let name = |folder: &str| format!("src/{folder}/liblimpid.a");
+    let libraries = BOARDS.iter().flat_map(|one| one.arduino);
+    let names = texts.iter().map(|(name, _)| name.clone());
+    let names: Vec<_> = names.chain(libraries.map(|folder| name(folder))).collect();
+    let mut files = place(into, &names)?;
+    for (name, text) in texts {
+        files.add(name, text);
+    }
     for one in &BOARDS {
-        let library = build(one)?;
+        let library = bytes(one)?;
         for folder in one.arduino {
-            copy(&library, &into.join("src").join(folder).join("liblimpid.a"))?;
+            files.add(name(folder), library.clone());
         }
     }
-    Ok(())
+    files.write()
 }
 
-/// Copies a folder of texts, with the version in the place of its name.
-fn copy_folder(from: &Path, to: &Path) -> Result<(), String> {
+/// Adds the texts in a folder to `texts`, with the version in the place of its name. A name is that of the file behind
+/// `above`.
+fn read_folder(from: &Path, above: &str, texts: &mut Vec<(String, String)>) -> Result<(), String> {
     let problem = |error: std::io::Error| format!("{}: {error}", from.display());
     for entry in fs::read_dir(from).map_err(problem)? {
         let path = entry.map_err(problem)?.path();
-        let copied = to.join(path.file_name().unwrap_or_default());
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = format!("{above}{file}");
         if path.is_dir() {
-            copy_folder(&path, &copied)?;
+            read_folder(&path, &format!("{name}/"), texts)?;
             continue;
         }
         let text =
             fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let text = text.replace("VERSION_OF_LIMPID", env!("CARGO_PKG_VERSION"));
-        write(&copied, text.as_bytes())?;
+        texts.push((
+            name,
+            text.replace("VERSION_OF_LIMPID", env!("CARGO_PKG_VERSION")),
+        ));
     }
     Ok(())
 }

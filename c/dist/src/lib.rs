@@ -2,9 +2,10 @@
 //! for Arduino.
 
 mod arduino;
+pub mod cli;
 mod header;
 mod libraries;
 
 pub use arduino::{arduino, milliseconds};
 pub use header::header;
-pub use libraries::{BOARDS, Build, COMPUTER, build, libraries, write};
+pub use libraries::{BOARDS, Build, COMPUTER, build, libraries};

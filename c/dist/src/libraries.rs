@@ -4,6 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use terminal::failure::Failure;
+use terminal::output::Folder;
+
 /// A library for a family of processors.
 #[derive(Clone, Copy, Debug)]
 pub struct Build {
@@ -101,33 +104,36 @@ pub fn build(one: &Build) -> Result<PathBuf, String> {
     Ok(library.join("c-library/liblimpid.a"))
 }
 
-/// Writes header and libraries into a folder: `include/limpid.h` and `FOLDER/liblimpid.a`.
+/// Writes header and libraries into a folder: `include/limpid.h` and `FOLDER/liblimpid.a`. Nothing is written unless
+/// all of them are built.
 ///
 /// # Errors
-/// One line that names the file or the target.
-pub fn libraries(into: &Path) -> Result<(), String> {
-    write(&into.join("include/limpid.h"), crate::header()?.as_bytes())?;
-    for one in [COMPUTER].iter().chain(&BOARDS) {
-        let library = build(one)?;
-        copy(&library, &into.join(one.folder).join("liblimpid.a"))?;
+/// [`Failure::Input`] that names the file or the target.
+pub fn libraries(into: &Path) -> Result<(), Failure> {
+    let all = || [COMPUTER].into_iter().chain(BOARDS);
+    let name = |one: &Build| format!("{}/liblimpid.a", one.folder);
+    let header = "include/limpid.h".to_owned();
+    let names: Vec<_> = [header.clone()]
+        .into_iter()
+        .chain(all().map(|one| name(&one)))
+        .collect();
+    let mut files = place(into, &names)?;
+    files.add(header, crate::header()?);
+    for one in all() {
+        files.add(name(&one), bytes(&one)?);
     }
-    Ok(())
+    files.write()
 }
 
-/// Writes a file and its folders.
-///
-/// # Errors
-/// One line that names the file.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    let problem = |error: std::io::Error| format!("{}: {error}", path.display());
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(problem)?;
-    }
-    fs::write(path, bytes).map_err(problem)
+/// The folder `into` without files yet. The libraries take minutes: what would be refused at their end is refused here.
+pub(crate) fn place(into: &Path, names: &[String]) -> Result<Folder, Failure> {
+    Folder::check("DIR", into)?;
+    Folder::check_files("DIR", into, names.iter().map(String::as_str))?;
+    Ok(Folder::new(into))
 }
 
-/// Copies a file, with the folders of the copy.
-pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), String> {
-    let bytes = fs::read(from).map_err(|error| format!("{}: {error}", from.display()))?;
-    write(to, &bytes)
+/// The bytes of a library, which is built first.
+pub(crate) fn bytes(one: &Build) -> Result<Vec<u8>, String> {
+    let library = build(one)?;
+    fs::read(&library).map_err(|error| format!("{}: {error}", library.display()))
 }

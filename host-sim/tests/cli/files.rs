@@ -188,8 +188,7 @@ fn report_does_not_replace_a_file_that_no_run_wrote() {
     }
     folder.write("mine/index.html", "mine");
     folder.write("log.csv", log());
-    let said =
-        "mine/index.html was not written by host-sim, or was changed since; choose another folder";
+    let said = "mine/index.html was not written by an earlier run, or was changed since; choose another folder";
     // More work than a test has time for.
     for command in [
         "robust --devices 10000000 --out mine",
@@ -240,7 +239,7 @@ fn default_folder_of_a_report_is_checked_before_the_run() {
         let said = format!("the default --out {usual}: ");
         assert!(line.contains(&said), "{command}: {line}");
         assert!(
-            line.contains("was not written by host-sim, or was changed since; choose"),
+            line.contains("was not written by an earlier run, or was changed since; choose"),
             "{command}: {line}"
         );
     }

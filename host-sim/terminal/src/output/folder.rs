@@ -14,7 +14,7 @@ use crate::failure::Failure;
 const MANIFEST: &str = ".host-sim-files";
 
 /// First line of [`MANIFEST`].
-const HEADING: &str = "# Files of one run of host-sim: the next run in this folder removes them";
+const HEADING: &str = "# Files of one run: the next run in this folder replaces or removes them";
 
 /// The files of one run for one folder. They appear together, and the files of an earlier run are
 /// removed. Files that this program did not write and files that were changed afterwards are kept: a run that
@@ -194,7 +194,7 @@ fn is_replaceable(path: &Path, name: &str, old: &Listed, bytes: Option<&[u8]>) -
 /// Message about a file that no run may replace.
 fn not_ours(path: &Path) -> String {
     format!(
-        "{} was not written by host-sim, or was changed since; choose another folder, or move this file away",
+        "{} was not written by an earlier run, or was changed since; choose another folder, or move this file away",
         path.display()
     )
 }
@@ -296,7 +296,7 @@ mod tests {
         let refused = |files: &[(&str, &str)], named: &str| {
             let said = write(&path, files).unwrap_err().to_string();
             let line =
-                format!("{named} was not written by host-sim, or was changed since; choose ");
+                format!("{named} was not written by an earlier run, or was changed since; choose ");
             assert!(said.contains(&line), "{said}");
             let early = check().unwrap_err();
             assert!(
