@@ -69,16 +69,6 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         (
             &[
                 "compare",
-                "--estimator",
-                "imm",
-                "--set",
-                "pll.bandwidth_hz=20",
-            ],
-            "--set pll.bandwidth_hz=20: pll is not run; add --estimator pll, or remove --set",
-        ),
-        (
-            &[
-                "compare",
                 "--set",
                 "low-pass.cutoff_hz=600",
                 "--rate",
@@ -133,6 +123,34 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         let line = folder.refused(arguments);
         assert!(line.contains(said), "{arguments:?}: {line}");
     }
+}
+
+#[test]
+fn value_of_an_estimator_that_does_not_run_is_refused() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("log.csv", "t,counts_large\n0,0\n");
+    let value = "--set low-pass.cutoff_hz=20";
+    for command in [
+        "compare --estimator pll --scenario step",
+        "compare --closed-loop --estimator pll",
+        "export --c --estimator pll",
+        "feel --estimator pll",
+        "limit --estimator pll",
+        "plot log.csv",
+        "real --estimator pll",
+        "replay log.csv --estimator pll",
+        "robust",
+        "sensitivity --estimator pll",
+        "zwidth --estimator pll",
+    ] {
+        let line = folder.refused(&format!("{command} {value}"));
+        let said = "--set low-pass.cutoff_hz=20: low-pass is not run; add --estimator low-pass, or remove --set";
+        assert!(line.contains(said), "{command}: {line}");
+    }
+    // The estimator of the handle runs too.
+    let short = "--scene wall --rate 1000 --seconds 0.3 --estimator pll --set kalman-triple-steady.jerk=100 --json -";
+    folder.good(&format!("compare --closed-loop {short}"));
+    folder.good(&format!("feel --causes-only {short}"));
 }
 
 #[test]
