@@ -362,4 +362,10 @@ fn main() {
         fs::write(out.join(name), text).expect("OUT_DIR is writable");
     }
     println!("cargo:rerun-if-changed=build.rs");
+    // What is translated to C is for boards too.
+    println!("cargo:rustc-check-cfg=cfg(board)");
+    let is = |name: &str, value: &str| env::var(name).is_ok_and(|list| list == value);
+    if is("CARGO_CFG_TARGET_OS", "none") || is("CARGO_CFG_TARGET_FAMILY", "wasm") {
+        println!("cargo:rustc-cfg=board");
+    }
 }

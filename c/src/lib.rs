@@ -7,10 +7,10 @@
 //! * `limpid_NAME_state_t`, its state, which the caller owns;
 //! * `limpid_NAME_start` and `limpid_NAME_update`, and functions for what else it reports.
 //!
-//! `build.rs` writes these functions from the catalogue. Sizes and alignments are those of this machine
+//! `build.rs` writes these functions from the catalogue. It sets `board` for targets without an operating system. Sizes and alignments are those of this machine
 //! and asserted for every target. A function reads its arguments through references: the caller
 //! passes pointers that are aligned, valid and not null, and states that have been started.
-#![cfg_attr(target_os = "none", no_std)]
+#![cfg_attr(board, no_std)]
 #![deny(unsafe_code)]
 #![allow(
     non_camel_case_types,
@@ -32,10 +32,10 @@ pub use sample::limpid_sample_t;
 
 include!(concat!(env!("OUT_DIR"), "/types.rs"));
 
-#[cfg(not(target_os = "none"))]
+#[cfg(not(board))]
 mod design;
 
-#[cfg(not(target_os = "none"))]
+#[cfg(not(board))]
 pub use design::limpid_setup_t;
 
 pub use functions::*;
@@ -51,7 +51,7 @@ mod functions {
 
     include!(concat!(env!("OUT_DIR"), "/functions.rs"));
 
-    #[cfg(not(target_os = "none"))]
+    #[cfg(not(board))]
     include!(concat!(env!("OUT_DIR"), "/designs.rs"));
 }
 
@@ -73,7 +73,7 @@ pub mod source {
 
 // No function of this library panics: a test looks for the symbols. The linker wants a handler
 // nevertheless if it links code of another panicking library.
-#[cfg(target_os = "none")]
+#[cfg(board)]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}

@@ -7,7 +7,10 @@ use catalogue::estimators::{Kind, Setup};
 use estimator_core::Hertz;
 use terminal::failure::Failure;
 
-use crate::libraries::{BOARDS, bytes, place};
+use crate::libraries::{BOARDS, bytes, place, source};
+
+/// The processors of Arduino that have no library. Arduino compiles every source for every processor.
+const WITHOUT_LIBRARY: &str = "#ifdef __XTENSA__";
 
 /// Files that are not generated.
 fn sources() -> PathBuf {
@@ -29,7 +32,7 @@ pub fn milliseconds() -> Result<String, String> {
         .map_err(|failure| failure.to_string())
 }
 
-/// Writes the folder, ready to zip: sources, header, a library per processor, examples. Nothing is written unless all
+/// Writes the folder, ready to zip: sources, header, a library per processor, the source for others, examples. Nothing is written unless all
 /// of them are built.
 ///
 /// # Errors
@@ -39,14 +42,20 @@ pub fn arduino(into: &Path) -> Result<(), Failure> {
     read_folder(&sources(), "", &mut texts)?;
     texts.push(("src/limpid.h".to_owned(), crate::header()?));
     texts.push(("src/LimpidMilliseconds.h".to_owned(), milliseconds()?));
+    let source_name = "src/limpid.c".to_owned();
     let name = |folder: &str| format!("src/{folder}/liblimpid.a");
     let libraries = BOARDS.iter().flat_map(|one| one.arduino);
     let names = texts.iter().map(|(name, _)| name.clone());
-    let names: Vec<_> = names.chain(libraries.map(|folder| name(folder))).collect();
+    let names = names.chain(libraries.map(|folder| name(folder)));
+    let names: Vec<_> = names.chain([source_name.clone()]).collect();
     let mut files = place(into, &names)?;
     for (name, text) in texts {
         files.add(name, text);
     }
+    files.add(
+        source_name,
+        format!("{WITHOUT_LIBRARY}\n{}#endif\n", source()?),
+    );
     for one in &BOARDS {
         let library = bytes(one)?;
         for folder in one.arduino {

@@ -33,8 +33,8 @@ enum What {
         #[arg(value_name = "FILE.h")]
         file: PathBuf,
     },
-    /// Write include/limpid.h and a static library per processor: host, cortex-m0, cortex-m3,
-    /// cortex-m4f, riscv32imc
+    /// Write include/limpid.h, a static library per processor (host, cortex-m0, cortex-m3, cortex-m4f,
+    /// riscv32imc), and source/limpid.c for other processors
     Libraries {
         /// Folder to write
         #[arg(value_name = "DIR", default_value = "target/limpid-c")]

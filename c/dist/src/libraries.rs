@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::translation::translation;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
@@ -70,41 +71,74 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Builds a library in a target directory below `target` and returns its path.
+/// Builds the library as a kind of crate in a folder below `target`. Returns the folder of the compiler's output.
 ///
 /// # Errors
 /// One line if cargo fails; it names the command that installs a missing target.
-pub fn build(one: &Build) -> Result<PathBuf, String> {
-    let target = root().join("target/c-library").join(one.folder);
+fn rustc(
+    folder: &str,
+    kind: &str,
+    triple: Option<&str>,
+    flags: Option<&str>,
+) -> Result<PathBuf, String> {
+    let mut target = root().join("target/c-library").join(folder);
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command
         .current_dir(root())
         .args(["rustc", "--quiet", "--profile", "c-library"])
-        .args(["--package", "limpid-c", "--crate-type", "staticlib"])
+        .args(["--package", "limpid-c", "--crate-type", kind])
         .arg("--target-dir")
         .arg(&target);
-    let mut library = target;
-    if let Some(triple) = one.triple {
+    if let Some(triple) = triple {
         command.args(["--target", triple]);
-        library.push(triple);
+        target.push(triple);
     }
-    if let Some(processor) = one.processor {
-        command.env("RUSTFLAGS", format!("-Ctarget-cpu={processor}"));
+    if let Some(flags) = flags {
+        command.env("RUSTFLAGS", flags);
     }
     let status = command
         .status()
         .map_err(|error| format!("cargo does not start: {error}"))?;
     if !status.success() {
-        let hint = one.triple.map_or_else(String::new, |triple| {
+        let hint = triple.map_or_else(String::new, |triple| {
             format!("; if the target is missing: rustup target add {triple}")
         });
-        return Err(format!("no library for {}{hint}", one.folder));
+        return Err(format!("no library for {folder}{hint}"));
     }
-    Ok(library.join("c-library/liblimpid.a"))
+    Ok(target.join("c-library"))
 }
 
-/// Writes header and libraries into a folder: `include/limpid.h` and `FOLDER/liblimpid.a`. Nothing is written unless
+/// Builds a library in a target directory below `target` and returns its path.
+///
+/// # Errors
+/// One line if cargo fails; it names the command that installs a missing target.
+pub fn build(one: &Build) -> Result<PathBuf, String> {
+    let flags = one.processor.map(|name| format!("-Ctarget-cpu={name}"));
+    let folder = rustc(one.folder, "staticlib", one.triple, flags.as_deref())?;
+    Ok(folder.join("liblimpid.a"))
+}
+
+/// The text of `limpid.c`, the functions of [`header`](crate::header) for processors without a library.
+///
+/// # Errors
+/// One line if cargo fails, or if the library has something that has no translation.
+pub fn source() -> Result<String, String> {
+    // The least instructions; relocations tell addresses of constants from numbers.
+    let flags = "-Ctarget-cpu=mvp -Clink-arg=--emit-relocs";
+    let folder = rustc(
+        "source",
+        "cdylib",
+        Some("wasm32-unknown-unknown"),
+        Some(flags),
+    )?;
+    let library = folder.join("limpid.wasm");
+    let bytes = fs::read(&library).map_err(|error| format!("{}: {error}", library.display()))?;
+    translation(&bytes, &crate::header()?)
+}
+
+/// Writes header, libraries and source into a folder: `include/limpid.h`, `FOLDER/liblimpid.a` and
+/// `source/limpid.c`. Nothing is written unless
 /// all of them are built.
 ///
 /// # Errors
@@ -112,13 +146,14 @@ pub fn build(one: &Build) -> Result<PathBuf, String> {
 pub fn libraries(into: &Path) -> Result<(), Failure> {
     let all = || [COMPUTER].into_iter().chain(BOARDS);
     let name = |one: &Build| format!("{}/liblimpid.a", one.folder);
-    let header = "include/limpid.h".to_owned();
-    let names: Vec<_> = [header.clone()]
+    let [header, source] = ["include/limpid.h", "source/limpid.c"].map(str::to_owned);
+    let names: Vec<_> = [header.clone(), source.clone()]
         .into_iter()
         .chain(all().map(|one| name(&one)))
         .collect();
     let mut files = place(into, &names)?;
     files.add(header, crate::header()?);
+    files.add(source, self::source()?);
     for one in all() {
         files.add(name(&one), bytes(&one)?);
     }

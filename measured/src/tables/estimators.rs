@@ -179,6 +179,8 @@ pub const C_COST: Table = Table {
         ("at_rest_rust", "at rest, Rust"),
         ("texture_c", "texture, C"),
         ("texture_rust", "texture, Rust"),
+        ("at_rest_source", "at rest, limpid.c"),
+        ("texture_source", "texture, limpid.c"),
     ],
     digits: None,
     command: "cargo test --release --package c-interface --test interface board",

@@ -2,14 +2,16 @@
  * the number of samples, the samples. Standard output has a job's results: per update the velocity, the
  * variance, the acceleration and the damping ratio, each 0 if the estimator does not report it. A first run
  * has the parameters of parameters.h, a second one those that the library designs, a third one updates over
- * intervals of one period, if the estimator takes them. */
+ * intervals of one period, if the estimator takes them. WITHOUT_DESIGN leaves out the second one. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "limpid.h"
 #include "parameters.h"
+#ifndef WITHOUT_DESIGN
 #include "designs.h"
+#endif
 
 static void put(float value)
 {
@@ -46,18 +48,25 @@ CASES(REPLAY)
 
 VARYING(REPLAY_OVER)
 
+#ifdef WITHOUT_DESIGN
+#define RUN_DESIGNED(one)
+#else
+#define RUN_DESIGNED(one)                                                \
+    limpid_##one##_t designed;                                           \
+    int32_t status = design_##one(&designed);                            \
+    if (status != LIMPID_OK) {                                           \
+        fprintf(stderr, "%s: %s\n", name, limpid_status_text(status));   \
+        exit(4);                                                         \
+    }                                                                    \
+    replay_##one(&designed, samples, n);
+#endif
+
 static void run(const char *name, const limpid_sample_t *samples, size_t n)
 {
-#define RUN(one, variance, acceleration, damping_ratio)                  \
-    if (strcmp(name, #one) == 0) {                                       \
-        limpid_##one##_t designed;                                       \
-        int32_t status = design_##one(&designed);                        \
-        if (status != LIMPID_OK) {                                       \
-            fprintf(stderr, "%s: %s\n", name, limpid_status_text(status)); \
-            exit(4);                                                     \
-        }                                                                \
-        replay_##one(&limpid_##one##_parameters, samples, n);            \
-        replay_##one(&designed, samples, n);                             \
+#define RUN(one, variance, acceleration, damping_ratio)       \
+    if (strcmp(name, #one) == 0) {                            \
+        replay_##one(&limpid_##one##_parameters, samples, n); \
+        RUN_DESIGNED(one)                                     \
     }
     CASES(RUN)
 #define RUN_OVER(one) \

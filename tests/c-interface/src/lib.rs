@@ -6,4 +6,4 @@ mod tools;
 
 pub use files::{designs, parameters};
 pub use reference::{CASES, Case, VALUES};
-pub use tools::{CORTEX_M4F, Compiler, compiled, folder, missing};
+pub use tools::{CORTEX_M4F, Compiler, compiled, folder, missing, not_there};

@@ -32,13 +32,18 @@ pub const CORTEX_M4F: Compiler = Compiler {
 #[must_use]
 pub fn missing(program: &str) -> bool {
     let runs = Command::new(program).arg("--version").output();
-    let missing = !runs.is_ok_and(|output| output.status.success());
+    not_there(runs.is_err(), program)
+}
+
+/// Says that something is missing, as [`missing`] says of a program, and returns whether it is.
+#[must_use]
+pub fn not_there(missing: bool, what: &str) -> bool {
     if missing {
         assert!(
             std::env::var_os("REQUIRE_C_TOOLS").is_none(),
-            "no {program} on this machine"
+            "no {what} on this machine"
         );
-        eprintln!("no {program} on this machine: not tested");
+        eprintln!("no {what} on this machine: not tested");
     }
     missing
 }

@@ -1,10 +1,12 @@
-//! A program in C for the board, linked by the Arm toolchain with the library for Cortex-M4F, on the
-//! emulated board: bits and instructions of every estimator beside those of the bench image in Rust.
+//! A program in C for the board, linked by the Arm toolchain with the library for Cortex-M4F or compiled with limpid.c,
+//! on the emulated board: bits and instructions of every estimator beside those of the bench image in Rust.
+
+use std::path::Path;
 
 use bench_image::{SUBJECTS, Subject};
 use c_interface::{CASES, CORTEX_M4F, Case, VALUES, compiled, folder, missing, parameters};
 use estimator_catalogue::{Parameter, Row};
-use limpid_dist::{BOARDS, build};
+use limpid_dist::{BOARDS, build, source};
 use measured::tables::C_COST;
 use pareto::board::{Job, Ran, on_board, on_board_in_c};
 use pareto::image::{Image, Level};
@@ -45,13 +47,12 @@ fn cases(rate_hz: u32) -> Vec<&'static Case> {
     cases
 }
 
-fn image(rate_hz: u32, cases: &[&Case]) -> Image {
+/// The image of these cases with `functions`, a library or a source.
+fn image(rate_hz: u32, cases: &[&Case], functions: &Path) -> Image {
     let folder = folder(&format!("board-{rate_hz}"));
     std::fs::write(folder.join("parameters.h"), parameters(cases)).expect("target is writable");
     let here = concat!(env!("CARGO_MANIFEST_DIR"), "/");
     let program = folder.join("image.elf");
-    let m4f = BOARDS.iter().find(|one| one.folder == "cortex-m4f");
-    let library = build(m4f.expect("a library")).expect("the library");
     let script = format!("-T{here}c/image.ld");
     let memory = format!("-L{here}../..");
     let more = [
@@ -59,9 +60,12 @@ fn image(rate_hz: u32, cases: &[&Case]) -> Image {
         "-nostdlib",
         "-Wl,--gc-sections",
         "-Wl,-z,noexecstack",
-        library.to_str().expect("a path in UTF-8"),
+        functions.to_str().expect("a path in UTF-8"),
         &script,
         &memory,
+        "-lgcc",
+        // Where compilers of boards fuse a product and a sum unless they are told not to.
+        "-std=gnu99",
     ];
     compiled(&CORTEX_M4F, "image.c", &folder, &more, &program);
     Image::read(Level::Speed, &program).expect("an image")
@@ -84,6 +88,10 @@ fn subject(case: &Case) -> usize {
         .expect("the bench image has it")
 }
 
+fn bits(value: &f32) -> u32 {
+    value.to_bits()
+}
+
 fn mean(ran: &Ran) -> f64 {
     let counted = &ran.instructions[SKIPPED..];
     counted.iter().copied().map(f64::from).sum::<f64>() / counted.len() as f64
@@ -94,12 +102,15 @@ fn updates_in_c_have_the_bits_and_nearly_the_instructions_of_rust() {
     if missing(CORTEX_M4F.program) {
         return;
     }
+    let m4f = BOARDS.iter().find(|one| one.folder == "cortex-m4f");
+    let library = build(m4f.expect("a library")).expect("the library");
+    let translated = folder("source").join("limpid.c");
+    std::fs::write(&translated, source().expect("limpid.c")).expect("target is writable");
     let bench = Image::build(Level::Speed).expect("the bench image");
     let all = traces::all().expect("the traces");
     let (mut rows, mut above) = (Vec::new(), Vec::new());
     for rate_hz in RATES_HZ {
         let cases = cases(rate_hz);
-        let image = image(rate_hz, &cases);
         let traces = ["still", "texture"].map(|name| {
             let same = |trace: &&BenchTrace| (trace.name, trace.rate_hz) == (name, rate_hz);
             &all.iter().find(same).expect("a trace").samples[..]
@@ -115,28 +126,30 @@ fn updates_in_c_have_the_bits_and_nearly_the_instructions_of_rust() {
                 .collect()
         };
         let names: Vec<_> = cases.iter().map(|case| case.c.to_string()).collect();
-        let in_c = on_board_in_c(&image, &names, &jobs(&|k| k)).expect("the image runs");
+        let [in_c, of_source] = [&library, &translated].map(|functions| {
+            let image = image(rate_hz, &cases, functions);
+            on_board_in_c(&image, &names, &jobs(&|k| k)).expect("the image runs")
+        });
         let in_rust = on_board(&bench, &jobs(&|k| subject(cases[k]))).expect("the image runs");
-        let pairs: Vec<_> = in_c.iter().zip(&in_rust).collect();
-        for (case, runs) in cases.iter().zip(pairs.chunks(traces.len())) {
+        for (k, case) in cases.iter().enumerate() {
             let mut row = vec![case.c.to_string(), rate_hz.to_string()];
-            for ((in_c, in_rust), samples) in runs.iter().zip(traces) {
+            let mut last = Vec::new();
+            for (samples, k) in traces.iter().zip(traces.len() * k..) {
                 let expected = (case.run)(samples);
-                let velocities = expected.iter().step_by(VALUES).map(|value| value.to_bits());
+                let expected: Vec<_> = expected.iter().step_by(VALUES).map(bits).collect();
                 let name = format!("{} at {rate_hz} Hz", case.c);
-                let same = in_c
-                    .velocities
-                    .iter()
-                    .map(|value| value.to_bits())
-                    .eq(velocities);
-                assert!(same, "{name}: bits on the board");
-                let (c, rust) = (mean(in_c), mean(in_rust));
+                for (ran, with) in [(&in_c[k], "the library"), (&of_source[k], "limpid.c")] {
+                    let same = ran.velocities.iter().map(bits).eq(expected.iter().copied());
+                    assert!(same, "{name}: bits on the board with {with}");
+                }
+                let (c, rust) = (mean(&in_c[k]), mean(&in_rust[k]));
                 row.extend([c, rust].map(|count| format!("{count:.0}")));
+                last.push(format!("{:.0}", mean(&of_source[k])));
                 if c > allowed(case.c.row, rust) {
                     above.push(format!("{name}: {c:.1} in C, {rust:.1} in Rust"));
                 }
             }
-            rows.push(row);
+            rows.push([row, last].concat());
         }
     }
     // A compiler moves an instruction or two.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use c_interface::{CORTEX_M4F, Compiler, compiled, folder, missing};
-use limpid_dist::{BOARDS, COMPUTER, arduino, build, header, milliseconds};
+use limpid_dist::{BOARDS, COMPUTER, arduino, build, header, milliseconds, source};
 
 const CPP11: Compiler = Compiler {
     program: "g++",
@@ -68,6 +68,11 @@ fn the_library_for_arduino_has_an_object_per_processor_and_its_examples_compile(
             library.display()
         );
     }
+    // Where a library is linked the source is empty.
+    let file = std::fs::read_to_string(folder.join("src/limpid.c")).expect("written");
+    let inside = file.strip_prefix("#ifdef __XTENSA__\n");
+    let inside = inside.and_then(|text| text.strip_suffix("#endif\n"));
+    assert_eq!(inside, Some(&*source().expect("limpid.c")));
     if missing(CPP11.program) {
         return;
     }

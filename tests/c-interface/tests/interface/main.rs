@@ -7,3 +7,4 @@ mod header;
 mod host;
 mod libraries;
 mod refused;
+mod source;
