@@ -7,9 +7,10 @@
 //! * `limpid_NAME_state_t`, its state, which the caller owns;
 //! * `limpid_NAME_start` and `limpid_NAME_update`, and functions for what else it reports.
 //!
-//! `build.rs` writes these functions from the catalogue. It sets `board` for targets without an operating system. Sizes and alignments are those of this machine
-//! and asserted for every target. A function reads its arguments through references: the caller
-//! passes pointers that are aligned, valid and not null, and states that have been started.
+//! `build.rs` writes these functions from the catalogue. It sets `board` for targets without an operating system.
+//! Sizes and alignments are those of this machine and asserted for every target. A function reads its arguments
+//! through references: the caller passes pointers that are aligned, valid and not null, and states that have been
+//! started.
 #![cfg_attr(board, no_std)]
 #![deny(unsafe_code)]
 #![allow(

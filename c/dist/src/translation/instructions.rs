@@ -66,8 +66,8 @@ impl Translator<'_> {
         })
     }
 
-    /// The address of an access, and its helper: that of the name if the access is aligned to 4 bytes or less than its
-    /// size.
+    /// The address of an access to a number called `name`, and the name of its helper, which assumes no alignment where
+    /// the access has less than 4 bytes of it.
     fn place(
         &mut self,
         name: &str,
