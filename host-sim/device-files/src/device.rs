@@ -42,7 +42,9 @@ pub fn counts_per_rev_rule(number: Option<i128>) -> String {
 /// # Errors
 /// The rule that the text breaks.
 pub fn parsed_counts_per_rev(text: &str) -> Result<u32, String> {
-    let number = text.parse().ok();
+    let is_whole = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    // A number of any length is above the range.
+    let number = (text.parse().ok()).or(is_whole.then_some(i128::MAX));
     let counts = number.and_then(|number: i128| u32::try_from(number).ok());
     counts
         .filter(|counts| COUNTS_PER_REV.contains(counts))

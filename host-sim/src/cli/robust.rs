@@ -137,7 +137,7 @@ fn write(
             device: &settings.device_name,
             table: &(summary::table(settings, &scenes, NARROW) + &below),
         };
-        let page = report::robust(&summary::heading(settings), &scenes, &printout)?;
+        let page = report::robust(&summary::heading(settings, &scenes), &scenes, &printout)?;
         let mut files = Folder::new(folder);
         files.add("robust.csv", rows::csv(rows)?);
         files.add("robust.json", json.as_slice());

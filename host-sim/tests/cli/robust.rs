@@ -48,7 +48,12 @@ fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
     );
     assert!(said.contains("--only nominal"), "{said}");
     assert!(folder.path().join("robust.csv").exists());
-    folder.ends(1, &format!("{run} --only nominal"));
+    assert!(
+        out.contains("corners and 0 drawn devices per scene"),
+        "{out}"
+    );
+    let (out, _) = folder.ends(1, &format!("{run} --only nominal"));
+    assert!(out.contains("1 device per scene"), "{out}");
     // The file of a shard is complete, and the merged run has the verdict.
     folder.ends(0, &format!("{run} --shard 1/1 --out ."));
     folder.ends(1, "merge shard-1-of-1.jsonl --out merged");

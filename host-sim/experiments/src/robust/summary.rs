@@ -90,17 +90,21 @@ fn summary(rows: &[RobustRow]) -> Result<SceneSummary, String> {
     })
 }
 
-/// One line on the settings of the experiment.
+/// One line on the settings of the experiment, of which `scenes` may have a single device.
 #[must_use]
-pub fn heading(settings: &Settings) -> String {
+pub fn heading(settings: &Settings, scenes: &[SceneSummary]) -> String {
+    let runs = |scene: &SceneSummary| scene.counts.iter().sum::<usize>();
+    let devices = match scenes.iter().map(runs).max() {
+        Some(1) => "1 device".to_owned(),
+        _ => format!(
+            "{} corners and {} drawn devices",
+            corners::corners().len(),
+            settings.devices
+        ),
+    };
     format!(
-        "{} Hz, {}, {} s, seed {}: {} corners and {} drawn devices per scene",
-        settings.rate_hz,
-        settings.estimator,
-        settings.seconds,
-        settings.seed,
-        corners::corners().len(),
-        settings.devices,
+        "{} Hz, {}, {} s, seed {}: {devices} per scene",
+        settings.rate_hz, settings.estimator, settings.seconds, settings.seed,
     )
 }
 
@@ -108,7 +112,7 @@ pub fn heading(settings: &Settings) -> String {
 /// median, 95 % quantile and largest value of each quantity. The limits follow below it.
 #[must_use]
 pub fn table(settings: &Settings, scenes: &[SceneSummary], width: usize) -> String {
-    let mut text = heading(settings).replacen(": ", ":\n", 1) + "\n";
+    let mut text = heading(settings, scenes).replacen(": ", ":\n", 1) + "\n";
     let count = |name, i: usize| {
         let cells = scenes.iter().map(|scene| scene.counts[i].to_string());
         Column::numbers("", name, cells)

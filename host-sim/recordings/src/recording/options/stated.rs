@@ -89,6 +89,7 @@ mod tests {
             ("-64", lines),
             ("4000001", finer),
             ("99999999999", finer),
+            (&"9".repeat(60), finer),
         ] {
             let text = format!("# a log\n# counts_per_rev = {number}\n");
             let error = stated_counts_per_rev(text.as_bytes(), "r.csv").unwrap_err();
