@@ -1,8 +1,9 @@
 //! Separators of a table of text, and its lines without comments.
 
+use std::cell::{OnceCell, RefCell};
 use std::io::{self, BufRead, Read};
 
-use csv::ByteRecord;
+use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::lines::LineReader;
 
@@ -50,15 +51,9 @@ impl Separator {
         if self == Self::Whitespace {
             return line.split_whitespace().map(str::to_owned).collect();
         }
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .has_headers(false)
-            .delimiter(self.byte())
-            .from_reader(line.as_bytes());
-        let mut record = ByteRecord::new();
-        if !matches!(reader.read_byte_record(&mut record), Ok(true)) {
+        let Some(record) = self.record(line.as_bytes()) else {
             return Vec::new();
-        }
+        };
         let text = |field: &[u8]| {
             let text = String::from_utf8_lossy(field);
             let quoted = text
@@ -66,7 +61,63 @@ impl Separator {
                 .and_then(|text| text.strip_suffix('"'));
             quoted.unwrap_or(&text).to_owned()
         };
-        record.iter().map(text).collect()
+        let fields = record.fields();
+        fields.map(|field| text(field.trim_ascii())).collect()
+    }
+
+    /// The fields of one line; `None` for an empty one.
+    fn record(self, line: &[u8]) -> Option<Record> {
+        // To make a reader takes longer than to read a thousand lines, and one that is cloned reads nothing.
+        thread_local! {
+            static READERS: [OnceCell<RefCell<Reader>>; Separator::ALL.len()] =
+                const { [const { OnceCell::new() }; Separator::ALL.len()] };
+        }
+        READERS.with(|readers| {
+            let new = || ReaderBuilder::new().delimiter(self.byte()).build();
+            let reader = readers[self as usize].get_or_init(|| RefCell::new(new()));
+            let mut reader = reader.borrow_mut();
+            reader.reset();
+            Record::read(&mut reader, line)
+        })
+    }
+}
+
+/// Fields of a line, one behind the other, and their ends.
+struct Record {
+    text: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+impl Record {
+    /// Reads a line; `None` if it is empty.
+    fn read(reader: &mut Reader, line: &[u8]) -> Option<Self> {
+        // As long as every field of the line with its end.
+        let mut text = vec![0; line.len() + 1];
+        let mut ends = vec![0; line.len() + 1];
+        let (mut written, mut ended, mut rest) = (0, 0, line);
+        loop {
+            let (result, read, more, fields) =
+                reader.read_record(rest, &mut text[written..], &mut ends[ended..]);
+            rest = &rest[read..];
+            written += more;
+            ended += fields;
+            match result {
+                ReadRecordResult::Record => {
+                    text.truncate(written);
+                    ends.truncate(ended);
+                    return Some(Self { text, ends });
+                }
+                ReadRecordResult::InputEmpty => {}
+                _ => return None,
+            }
+        }
+    }
+
+    fn fields(&self) -> impl Iterator<Item = &[u8]> {
+        let starts = [0].into_iter().chain(self.ends.iter().copied());
+        starts
+            .zip(&self.ends)
+            .map(|(start, &end)| &self.text[start..end])
     }
 }
 
