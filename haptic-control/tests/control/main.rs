@@ -16,6 +16,7 @@ mod monitor;
 mod monitor_limits;
 mod press;
 mod safety;
+mod safety_requests;
 mod safety_times;
 mod scenes;
 mod stage;

@@ -1,22 +1,22 @@
-//! The safety state machine: what each mode does with findings and requests.
+//! The safety state machine: what each mode does with findings. What it does with requests is in `safety_requests`.
 
 use haptic_control::{Mode, Order, Request, Safety, SafetyState, Stop, SupplyFinding};
 
-const SAFETY: Safety = Safety {
+pub(crate) const SAFETY: Safety = Safety {
     settle: 0,
     silence: Some(100),
     disarm: Some(300),
     missed: 4,
     scenes: 8,
 };
-const WELL: Findings = Findings::well(Outside(false));
+pub(crate) const WELL: Findings = Findings::well(Outside(false));
 
 /// Findings of a device that measures its supply.
-type Findings = haptic_control::Findings<Outside>;
+pub(crate) type Findings = haptic_control::Findings<Outside>;
 
 /// Whether the supply is outside of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Outside(bool);
+pub(crate) struct Outside(bool);
 
 impl SupplyFinding for Outside {
     fn is_outside(&self) -> bool {
@@ -24,18 +24,18 @@ impl SupplyFinding for Outside {
     }
 }
 
-fn tick(state: &mut SafetyState, findings: Findings, request: Option<Request>) -> Order {
+pub(crate) fn tick(state: &mut SafetyState, findings: Findings, request: Option<Request>) -> Order {
     SAFETY.tick(state, &findings, request)
 }
 
-fn armed() -> SafetyState {
+pub(crate) fn armed() -> SafetyState {
     let mut state = SAFETY.start(Stop::None);
     let armed = tick(&mut state, WELL, Some(Request::Arm));
     assert!(armed.enable && armed.restart && state.mode() == Mode::Armed);
     state
 }
 
-fn running() -> SafetyState {
+pub(crate) fn running() -> SafetyState {
     let mut state = armed();
     let on = tick(&mut state, WELL, Some(Request::Select(2)));
     assert_eq!((on.enable, on.restart, on.select), (true, false, Some(2)));
@@ -49,7 +49,7 @@ const SLOW: Safety = Safety {
     ..SAFETY
 };
 
-fn settling() -> SafetyState {
+pub(crate) fn settling() -> SafetyState {
     let mut state = SLOW.start(Stop::None);
     SLOW.tick(&mut state, &WELL, Some(Request::Arm));
     SLOW.tick(&mut state, &WELL, Some(Request::Select(2)));
@@ -299,71 +299,6 @@ fn reset_with_a_cause_boots_in_state_safe() {
         assert_eq!((state.mode(), state.stop()), (Mode::Boot, Stop::None));
     }
     assert_eq!(SAFETY.start(Stop::None).mode(), Mode::Boot);
-}
-
-#[test]
-fn scene_selected_during_boot_starts_at_the_first_arm() {
-    let mut state = SAFETY.start(Stop::None);
-    assert!(!tick(&mut state, WELL, Some(Request::Select(3))).enable);
-    // There are eight scenes.
-    assert!(!tick(&mut state, WELL, Some(Request::Select(8))).enable);
-    let order = tick(&mut state, WELL, Some(Request::Arm));
-    assert_eq!(
-        (order.enable, order.restart, order.select),
-        (true, true, Some(3))
-    );
-    assert_eq!(state.mode(), Mode::Running);
-    tick(&mut state, WELL, Some(Request::Disarm));
-    let order = tick(&mut state, WELL, Some(Request::Arm));
-    assert_eq!((order.enable, order.select), (true, None));
-    assert_eq!(state.mode(), Mode::Armed);
-}
-
-#[test]
-fn disarm_clears_scene_and_cause_and_restarts() {
-    let mut chosen = SAFETY.start(Stop::None);
-    tick(&mut chosen, WELL, Some(Request::Select(3)));
-    for before in [
-        chosen,
-        SAFETY.start(Stop::Panic),
-        settling(),
-        armed(),
-        running(),
-    ] {
-        let mut state = before;
-        let order = tick(&mut state, WELL, Some(Request::Disarm));
-        assert_eq!(
-            order,
-            Order {
-                enable: false,
-                restart: true,
-                select: None
-            }
-        );
-        assert_eq!((state.mode(), state.stop()), (Mode::Boot, Stop::None));
-        assert_eq!(tick(&mut state, WELL, Some(Request::Arm)).select, None);
-        assert_eq!(state.mode(), Mode::Armed);
-    }
-}
-
-#[test]
-fn selection_starts_stops_or_changes_a_scene() {
-    let mut state = armed();
-    for (scene, mode) in [
-        (7, Mode::Running),
-        (1, Mode::Running),
-        (0, Mode::Armed),
-        (0, Mode::Armed),
-    ] {
-        let order = tick(&mut state, WELL, Some(Request::Select(scene)));
-        assert_eq!(
-            (order.enable, order.restart, order.select),
-            (true, false, Some(scene))
-        );
-        assert_eq!(state.mode(), mode);
-    }
-    let order = tick(&mut state, WELL, Some(Request::Select(8)));
-    assert_eq!((order.select, state.mode()), (None, Mode::Armed));
 }
 
 /// From every mode, whatever is found and asked: enabled is what the mode says, only `Arm` gets

@@ -127,7 +127,7 @@ fn rejected_commands_are_counted_by_reason() {
     }
 }
 
-/// The first parameter of each scene, which 1e-3 is in the range of, or it has none.
+/// 1e-3 is in the range of the first parameter of each scene that has one.
 #[test]
 fn parameters_of_scenes_that_the_image_does_not_have_are_unknown() {
     for kind in SceneKind::ALL {

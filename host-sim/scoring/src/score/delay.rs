@@ -8,10 +8,10 @@ const MOVES_RAD_S: f64 = 1e-3;
 /// Delay of the estimate against the truth, samples; negative if the estimate leads. It is the
 /// shift with the least mean square error, refined below one sample by a parabola.
 ///
-/// Every shift compares the estimates of `scored` in `margin..len - margin`, with the truth at all samples. The search begins at zero, doubles
-/// the shift in the direction of the smaller error, and then halves the bracket of the minimum. The
-/// result is `None` if the truth does not move, if the trace is shorter than three margins or if
-/// the best shift is not below the margin.
+/// Every shift compares the estimates of `scored` in `margin..len - margin` with the truth, also where it is not
+/// known. The search begins at zero, doubles the shift in the direction of the smaller error, and then halves the
+/// bracket of the minimum. The result is `None` if the truth does not move, if the trace is shorter than three margins
+/// or if the best shift is not below the margin.
 pub(super) fn samples(
     truth: &[f64],
     estimate: &[f32],

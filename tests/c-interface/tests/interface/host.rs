@@ -12,35 +12,24 @@ use pareto::traces::{self, RATES_HZ};
 
 const C99: Compiler = Compiler {
     program: "gcc",
-    arguments: &[
-        "-std=c99",
-        "-O2",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-pedantic",
-        "-Wconversion",
-        "-Wsign-conversion",
-        "-Wdouble-promotion",
-    ],
+    arguments: &["-std=c99", "-O2"],
 };
 
 const CPP17: Compiler = Compiler {
     program: "g++",
-    arguments: &[
-        "-x",
-        "c++",
-        "-std=c++17",
-        "-O2",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-pedantic",
-        "-Wconversion",
-        "-Wsign-conversion",
-        "-Wdouble-promotion",
-    ],
+    arguments: &["-x", "c++", "-std=c++17", "-O2"],
 };
+
+/// Warnings, which a program of a user may have as errors.
+const WARNINGS: [&str; 7] = [
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-pedantic",
+    "-Wconversion",
+    "-Wsign-conversion",
+    "-Wdouble-promotion",
+];
 
 /// Address and undefined-behaviour sanitizers.
 const SANITIZED: Compiler = Compiler {
@@ -72,7 +61,7 @@ fn program(compiler: &Compiler, name: &str, rate_hz: u32) -> PathBuf {
     let library = build(&COMPUTER).expect("the library");
     // `-x none`: the library is no source of the language before.
     let library = ["-x", "none", library.to_str().expect("a path in UTF-8")];
-    program_of(compiler, name, rate_hz, &library)
+    program_of(compiler, name, rate_hz, &[&WARNINGS[..], &library].concat())
 }
 
 /// Compiles the program for the cases of a rate with these arguments for the functions.
