@@ -187,6 +187,14 @@ impl Gathered {
             ));
         }
         let unexplained = fit.unexplained / fit.driven;
+        if unexplained.is_nan() {
+            return Err(
+                "the motion does not follow column current: no lag and no torque constant explain it; check that \
+                 column current is that of the large motor, with its sign and in A, and that the motor drives the \
+                 shaft"
+                    .to_owned(),
+            );
+        }
         let drive = fit.estimate(|ratios, _| ratios[0]);
         let backward = drive.value < -drive.half;
         if unexplained < MOST_UNEXPLAINED && backward {
@@ -199,8 +207,7 @@ impl Gathered {
         if !backward && let Some(why) = self.handle_is_reversed() {
             return Err(why);
         }
-        // NaN is an error too.
-        if unexplained.is_nan() || unexplained >= REFUSED_UNEXPLAINED || backward {
+        if unexplained >= REFUSED_UNEXPLAINED || backward {
             return Err(format!(
                 "the model leaves {:.0} % of the motor's torque unexplained (limit {:.0} %){}; check that \
                  column current is in A, that large.counts_per_rev = {} is correct, and that {}",

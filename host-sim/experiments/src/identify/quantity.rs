@@ -218,7 +218,10 @@ impl Quantity {
     /// Key and half-width, for a message of one line.
     pub(super) fn short(&self) -> String {
         let percent = 100.0 * self.estimate.half / self.estimate.value.abs();
-        format!("{} +-{percent:.0} %", self.key)
+        match percent.is_finite() {
+            true => format!("{} +-{percent:.0} %", self.key),
+            false => format!("{} undetermined", self.key),
+        }
     }
 
     /// Ratio to the device file's value, and whether that value is inside the interval.

@@ -234,6 +234,13 @@ pub(super) fn without_value(layout: &Layout, lines: &[&str]) -> Vec<usize> {
         .collect()
 }
 
+/// The fields of the first of the rows among `lines`, those that have a name.
+fn first_row(layout: &Layout, lines: &[&str]) -> Vec<String> {
+    let mut first = rows(layout, lines).into_iter().next().unwrap_or_default();
+    first.truncate(layout.names.len());
+    first
+}
+
 /// Seconds from 1970 to 2001 and to 2100, between which the time of a log is.
 const SINCE_1970: std::ops::Range<f64> = 1e9..4.1e9;
 
@@ -244,7 +251,7 @@ pub(super) fn since_1970(layout: &Layout, lines: &[&str]) -> Vec<(usize, &'stati
         let fits = |unit: &&Unit| SINCE_1970.contains(&(number / unit.per_s()));
         Quantity::Time.units().iter().find(fits).map(Unit::name)
     };
-    let first = rows(layout, lines).into_iter().next().unwrap_or_default();
+    let first = first_row(layout, lines);
     let fields = first.iter().enumerate();
     fields
         .filter_map(|(place, field)| Some((place, unit(field)?)))
@@ -253,7 +260,7 @@ pub(super) fn since_1970(layout: &Layout, lines: &[&str]) -> Vec<(usize, &'stati
 
 /// Places of the columns of `layout` that are a date or a time of day in the first of the rows among `lines`.
 pub(super) fn moments(layout: &Layout, lines: &[&str]) -> Vec<usize> {
-    let first = rows(layout, lines).into_iter().next().unwrap_or_default();
+    let first = first_row(layout, lines);
     let is_moment = |place: &usize| Moment::parse(&first[*place]).is_some();
     (0..first.len()).filter(is_moment).collect()
 }

@@ -72,3 +72,12 @@ fn separators_of_header_and_rows_that_differ_are_named() {
     }
     read("t counts_large\n0\t1\n0.001\t2\n", "").unwrap();
 }
+
+#[test]
+fn row_with_more_fields_than_the_header_has_names_is_refused() {
+    for row in ["a\tb\tc\t06:00:00", "a\tb\tc\t1700000000"] {
+        let error = read(&format!("Measurement\t\n{row}\n"), "").unwrap_err();
+        let said = "r.csv: line 1: no column t; found: 'Measurement'; ";
+        assert!(error.starts_with(said), "{error}");
+    }
+}
