@@ -10,6 +10,7 @@
 //! | [`commands`] | the command channel | every byte is in a frame, counted, or still held |
 //! | [`link`] | the bytes from a board | every byte is in a frame, counted, or still held; a valid frame is found |
 //! | [`control`] | a whole control task's inputs | currents within limits, safe once stopped |
+//! | [`logs`] | the rows of a log | every velocity, error and constant finite, every message one line |
 //! | [`texts`] | recordings, devices, presets | read whole, or refused in one line |
 
 mod bytes;
@@ -17,5 +18,6 @@ pub mod commands;
 pub mod control;
 pub mod designs;
 pub mod link;
+pub mod logs;
 pub mod samples;
 pub mod texts;

@@ -1,12 +1,15 @@
 //! Every fuzz body on bytes that proptest makes up.
 
+use std::fs;
+use std::path::PathBuf;
+
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 
 use drivers::link::{Edge, LONGEST, Message, Rejected};
 use drivers::{Command, encode};
-use fuzz_bodies::{commands, control, designs, link, samples, texts};
+use fuzz_bodies::{commands, control, designs, link, logs, samples, texts};
 use haptic_control::Request;
 use stress::designs::kinds;
 use stress::tested::TestedEstimator;
@@ -104,6 +107,43 @@ fn csv_text() -> impl Strategy<Value = Vec<u8>> {
     })
 }
 
+/// The begin of a log of `tests/data/logs` with lines exchanged, bytes changed, and an end that is cut off.
+fn log_text() -> impl Strategy<Value = Vec<u8>> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/logs");
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .expect("the logs")
+        .map(|entry| entry.expect("a log").path())
+        .collect();
+    paths.sort();
+    let begin = |path: &PathBuf| {
+        let mut bytes = fs::read(path).expect("a log");
+        bytes.truncate(1500);
+        bytes
+    };
+    let begins: Vec<_> = paths.iter().map(begin).collect();
+    let changes = vec((any::<[usize; 2]>(), any::<u8>(), 0..4u8), 0..6);
+    (proptest::sample::select(begins), changes).prop_map(|(mut bytes, changes)| {
+        for ([at, other], byte, kind) in changes {
+            let [at, other] = [at, other].map(|place| place % bytes.len().max(1));
+            match kind {
+                0 => bytes.truncate(at),
+                1 => {
+                    let mut lines: Vec<_> = bytes.split(|byte| *byte == b'\n').collect();
+                    let count = lines.len();
+                    lines.swap(at % count, other % count);
+                    bytes = lines.join(&b'\n');
+                }
+                _ => bytes
+                    .iter_mut()
+                    .skip(at)
+                    .take(1)
+                    .for_each(|changed| *changed = byte),
+            }
+        }
+        bytes
+    })
+}
+
 /// The default device's file with lines lost, moved, and values exchanged.
 fn toml_text() -> impl Strategy<Value = Vec<u8>> {
     let whole = toml::to_string(&simulation::device::Device::default()).expect("serialises");
@@ -172,6 +212,11 @@ proptest! {
     }
 
     #[test]
+    fn any_rows_of_a_log_give_finite_results(data in any_bytes(200)) {
+        logs::run(&data);
+    }
+
+    #[test]
     fn outputs_are_within_the_limits_for_any_inputs(data in any_bytes(8000)) {
         control::run(&data);
     }
@@ -191,7 +236,7 @@ proptest! {
     }
 
     #[test]
-    fn any_file_is_read_or_refused_with_one_line(data in prop_oneof![any_bytes(300), csv_text(), toml_text()]) {
+    fn any_file_is_read_or_refused_with_one_line(data in prop_oneof![any_bytes(300), csv_text(), log_text(), toml_text()]) {
         texts::run(&data);
     }
 }
