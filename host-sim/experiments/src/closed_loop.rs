@@ -7,6 +7,7 @@ mod hand;
 mod oracle;
 mod possible;
 mod press;
+mod protection;
 mod rate;
 mod record;
 mod scene;
@@ -15,19 +16,21 @@ mod truth;
 
 use estimator_core::{Amps, Count, Hertz, Sample, VelocityEstimator};
 use haptic_control::{
-    Action, AnyScene, Balance, Controller, Currents, DualStage, LoopPoles, Monitor, Need,
-    NewtonMetres, Rig, Scene, Senses, Stop,
+    Action, AnyScene, Controller, Currents, DualStage, LoopPoles, Need, NewtonMetres, Rig, Scene,
+    Senses, Stop,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use oracle::{Foresight, Present};
+use protection::Protection;
 use simulation::device::Device;
 use simulation::plant::{HandleTorques, Pose, steps_per_tick};
 use truth::{TrueMotion, Truth};
 
 pub use bench::Bench;
 pub use conditions::{Conditions, Dac, Exact};
+use fault::OngoingFault;
 pub use fault::{EncoderFault, Faulty};
 pub use hand::{Hand, Motion};
 pub use oracle::Oracle;
@@ -215,28 +218,20 @@ impl Running<'_> {
         let mut foresight = oracle.map(foresight);
         let controller = Controller::new(scene, large, handle, self.rig);
         let mut monitored = *assumed;
-        if self.run.encoder == FeedbackEncoder::Reference {
+        if run.encoder == FeedbackEncoder::Reference {
             monitored.large.counts_per_rev = device.reference.counts_per_rev;
         }
-        let monitor = Monitor::new(&monitored, Hertz(*rate_hz));
-        let balance = Balance::new(&monitored, Hertz(*rate_hz));
         let mut sample = bench.sample(Amps::ZERO);
         let mut state = controller.start(&sample);
-        let mut watch = monitor.start(&sample);
-        let mut balanced = balance.start(&sample);
+        let mut protection = Protection::start(&monitored, Hertz(*rate_hz), &sample);
         let mut pending = vec![(0.0, 0.0); self.run.late_ticks];
         let mut last_omega = bench.plant.small().omega;
         let mut hand = self.run.hand.motion(period, self.run.seed);
         let known = (self.conditions.grips).filter(|grips| grips.len() >= self.ticks);
-        let mut since = None;
-        let mut stopped = None;
+        let mut fault = fault.map(|(from, faulty)| OngoingFault::new(from, faulty));
         for k in 0..self.ticks {
-            if let Some((_, faulty)) = fault.filter(|(from, _)| k >= *from) {
-                let (count, fault) = match faulty {
-                    Faulty::Large(fault) => (&mut sample.count, fault),
-                    Faulty::Small(fault) => (&mut sample.coupled, fault),
-                };
-                *count = fault.counted(*count, *since.get_or_insert(*count));
+            if let Some(fault) = &mut fault {
+                fault.distort(k, &mut sample);
             }
             let grip = match known {
                 Some(grips) => grips[k],
@@ -249,19 +244,17 @@ impl Running<'_> {
             let acceleration = -torques.inertia / device.stages.small.inertia;
             truth[1].set(omega, acceleration, per_count[1], period);
             let mut action = controller.step(&mut state, &sample);
-            stopped = stopped
-                .or(monitor.check(&mut watch, &sample))
-                .or(balance.check(&mut balanced, &sample));
+            let stopped = protection.check(&sample);
+            let present = |large_a| Present {
+                plant: &bench.plant,
+                grip: &grip,
+                large_a,
+            };
             if let Some(foresight) = &mut foresight {
                 let torque = foresight.wanted(bench.plant.small(), &torques);
                 action.torque = NewtonMetres(torque as f32);
                 let (large_a, _) = applied(dac.as_ref(), &action.currents);
-                let now = Present {
-                    plant: &bench.plant,
-                    grip: &grip,
-                    large_a,
-                };
-                action.currents.small = foresight.current(now);
+                action.currents.small = foresight.current(present(large_a));
             }
             let wanted = match stopped {
                 None => action.currents,
@@ -275,14 +268,8 @@ impl Running<'_> {
                 None => self.run.offsets_a,
                 Some(_) => [0.0; 2],
             };
-            let expected = foresight.as_ref().map(|foresight| {
-                let now = Present {
-                    plant: &bench.plant,
-                    grip: &grip,
-                    large_a,
-                };
-                foresight.parasitic(now, small_a)
-            });
+            let expected = (foresight.as_ref())
+                .map(|foresight| foresight.parasitic(present(large_a), small_a));
             let (_, small_before) = bench.plant.commands();
             bench
                 .plant

@@ -1,6 +1,6 @@
 //! Faults of an encoder.
 
-use estimator_core::Count;
+use estimator_core::{Count, Sample};
 
 /// Fault of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +45,38 @@ impl EncoderFault {
             Self::StuckBoth => since.0,
             Self::Swapped => since.0.wrapping_sub(count.0.wrapping_sub(since.0)),
         })
+    }
+}
+
+/// A fault in a run.
+pub(super) struct OngoingFault {
+    /// Tick from which on the encoder is faulty.
+    from: usize,
+    faulty: Faulty,
+    /// Count when the fault began.
+    since: Option<Count>,
+}
+
+impl OngoingFault {
+    /// The encoder is faulty from the tick `from` on.
+    pub(super) const fn new(from: usize, faulty: Faulty) -> Self {
+        Self {
+            from,
+            faulty,
+            since: None,
+        }
+    }
+
+    /// Replaces the correct count in the sample of tick `k` by the faulty one.
+    pub(super) fn distort(&mut self, k: usize, sample: &mut Sample) {
+        if k < self.from {
+            return;
+        }
+        let (count, fault) = match self.faulty {
+            Faulty::Large(fault) => (&mut sample.count, fault),
+            Faulty::Small(fault) => (&mut sample.coupled, fault),
+        };
+        *count = fault.counted(*count, *self.since.get_or_insert(*count));
     }
 }
 
