@@ -5,7 +5,9 @@ mod longest;
 use std::fmt::Write as _;
 
 use crate::recording::MEASURED;
-use crate::telemetry::{COLUMNS, Column, Frame, LearnedLine, MeasuredLine, Run, Telemetry};
+use crate::telemetry::{
+    COLUMNS, Column, Frame, LearnedLine, MeasuredLine, Run, SideLines, Telemetry,
+};
 use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
 
@@ -30,16 +32,7 @@ const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let rows = || run.frames.iter().filter(|(_, frame)| is_row(frame));
     let truth: Option<Vec<f64>> = rows().map(|(_, f)| true_omega(f)).collect();
-    let edges = run.frames.iter().any(|(_, f)| f.side_lines.edge.is_some());
-    let measured = measured(run) > 0;
-    let supply = run
-        .frames
-        .iter()
-        .any(|(_, f)| f.side_lines.supply.is_some());
-    let learned = run
-        .frames
-        .iter()
-        .any(|(_, f)| f.side_lines.learned.is_some());
+    let side = SideColumns::of(run);
     let known = |(_, value): &&Column| run.frames.iter().all(|(_, frame)| value(frame).is_some());
     let columns: Vec<_> = COLUMNS.iter().filter(known).collect();
     let mut text = "t".to_owned();
@@ -47,16 +40,9 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
         text.push(',');
         text += name;
     }
-    let [large, small] = MEASURED;
-    let more = [
-        (",edge_tick,edge_bound", edges),
-        (&format!(",{large},{small}"), measured),
-        (",supply", supply),
-        (LEARNED, learned),
-        (",true_omega", truth.is_some()),
-    ];
-    for (name, _) in more.iter().filter(|(_, there)| *there) {
-        text += name;
+    text += &side.head();
+    if truth.is_some() {
+        text += ",true_omega";
     }
     text.push('\n');
     for (k, (tick, frame)) in rows().enumerate() {
@@ -67,8 +53,56 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
             text.push(',');
             text += &value(frame).unwrap_or_default();
         }
-        if edges {
-            let _ = match frame.side_lines.edge {
+        side.write(&mut text, &frame.side_lines, t);
+        if let Some(truth) = &truth {
+            let _ = write!(text, ",{}", truth[k]);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Which optional columns a recording has from side lines.
+struct SideColumns {
+    edges: bool,
+    measured: bool,
+    supply: bool,
+    learned: bool,
+}
+
+impl SideColumns {
+    fn of(run: &Run) -> Self {
+        let any = |is_there: fn(&SideLines) -> bool| {
+            let mut frames = run.frames.iter();
+            frames.any(|(_, frame)| is_there(&frame.side_lines))
+        };
+        Self {
+            edges: any(|lines| lines.edge.is_some()),
+            measured: measured(run) > 0,
+            supply: any(|lines| lines.supply.is_some()),
+            learned: any(|lines| lines.learned.is_some()),
+        }
+    }
+
+    /// Their names, each behind a comma.
+    fn head(&self) -> String {
+        let [large, small] = MEASURED;
+        let names = [
+            (",edge_tick,edge_bound", self.edges),
+            (&format!(",{large},{small}"), self.measured),
+            (",supply", self.supply),
+            (LEARNED, self.learned),
+        ];
+        let names = names.iter().filter(|(_, is_there)| *is_there);
+        names.map(|(name, _)| *name).collect()
+    }
+
+    /// Writes the fields of a frame with these side lines at time `t`, s. A line that is missing leaves its fields
+    /// empty.
+    fn write(&self, text: &mut String, lines: &SideLines, t: f64) {
+        // Writing to a string cannot fail.
+        if self.edges {
+            let _ = match lines.edge {
                 None => write!(text, ",,"),
                 Some(edge) => {
                     let now = (t * EDGE_CLOCK_HZ).round() as i64;
@@ -76,22 +110,22 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
                 }
             };
         }
-        if measured {
-            let _ = match frame.side_lines.measured {
+        if self.measured {
+            let _ = match lines.measured {
                 None => write!(text, ",,"),
                 Some(MeasuredLine { large, small }) => {
                     write!(text, ",{},{}", field(large), field(small))
                 }
             };
         }
-        if supply {
-            let _ = match frame.side_lines.supply {
+        if self.supply {
+            let _ = match lines.supply {
                 None => write!(text, ","),
                 Some(volts) => write!(text, ",{}", field(volts)),
             };
         }
-        if learned {
-            let _ = match frame.side_lines.learned {
+        if self.learned {
+            let _ = match lines.learned {
                 Some(LearnedLine {
                     damping,
                     friction,
@@ -102,12 +136,7 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
                 _ => write!(text, ",,,"),
             };
         }
-        if let Some(truth) = &truth {
-            let _ = write!(text, ",{}", truth[k]);
-        }
-        text.push('\n');
     }
-    text
 }
 
 /// Whether a frame has a row in a recording.

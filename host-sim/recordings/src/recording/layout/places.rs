@@ -59,6 +59,64 @@ impl Places {
         &self.columns
     }
 
+    /// Adds the columns of the program that wrote the log.
+    fn add_of_format(&mut self, format: &Format, layout: &Layout) {
+        let names = match SIMPLEFOC_COLUMNS
+            .iter()
+            .find(|names| names.len() == layout.names.len())
+        {
+            Some(names) if !layout.has_header() => {
+                names.iter().map(|name| (*name).to_owned()).collect()
+            }
+            _ => layout.names.clone(),
+        };
+        for found in format.find(&names) {
+            let unit = found.column.quantity().unit(found.unit);
+            if let (Some(unit), None) = (unit, self.get(found.column)) {
+                self.columns
+                    .push(layout.at(found.column, found.place, unit));
+            }
+        }
+    }
+
+    /// Checks that what is needed is there.
+    fn check(&self, layout: &Layout, options: &ReadOptions, name: &str) -> Result<(), Failure> {
+        if let (Some(modulus), None) = (options.modulus[1], self.get(Column::CountsSmall)) {
+            return Err(Failure::Input(format!(
+                "{name}: --modulus counts_small={modulus}: there is no column counts_small; name it with \
+                 --column counts_small=THEIRS, or leave the option out"
+            )));
+        }
+        let needs = |column| match self.get(column) {
+            Some(_) => Ok(()),
+            None => Err(header::missing(column, layout, self, name)),
+        };
+        if options.row_rate_hz.is_none() {
+            if self
+                .format
+                .is_some_and(|format| std::ptr::eq(format, &SIMPLEFOC))
+                && self.get(Column::T).is_none()
+            {
+                return Err(header::without_time(&SIMPLEFOC, name));
+            }
+            // A time that is known by its name is not what is missing.
+            if layout.stating(Column::T, &self.columns).is_some() {
+                needs(Column::CountsLarge)?;
+            }
+            needs(Column::T)?;
+        }
+        needs(Column::CountsLarge)?;
+        for [one, other] in [
+            [Column::EdgeTick, Column::EdgeBound],
+            [Column::EdgeBound, Column::EdgeTick],
+        ] {
+            if self.get(one).is_some() {
+                needs(other)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Adds time and position by names that say what they are, if both are read then.
     fn add_stating(&mut self, layout: &Layout, options: &ReadOptions) {
         let needed = match options.row_rate_hz {
@@ -179,23 +237,7 @@ impl Layout {
             }
         }
         if let Some(format) = places.format {
-            let names = match SIMPLEFOC_COLUMNS
-                .iter()
-                .find(|names| names.len() == self.names.len())
-            {
-                Some(names) if !self.has_header() => {
-                    names.iter().map(|name| (*name).to_owned()).collect()
-                }
-                _ => self.names.clone(),
-            };
-            for found in format.find(&names) {
-                let unit = found.column.quantity().unit(found.unit);
-                if let (Some(unit), None) = (unit, places.get(found.column)) {
-                    places
-                        .columns
-                        .push(self.at(found.column, found.place, unit));
-                }
-            }
+            places.add_of_format(format, self);
         }
         places.leave_out_without_value(self, options);
         if let Some(hz) = options.row_rate_hz {
@@ -209,39 +251,7 @@ impl Layout {
             places.columns.retain(|place| place.column != Column::T);
         }
         places.add_stating(self, options);
-        if let (Some(modulus), None) = (options.modulus[1], places.get(Column::CountsSmall)) {
-            return Err(Failure::Input(format!(
-                "{name}: --modulus counts_small={modulus}: there is no column counts_small; name it with \
-                 --column counts_small=THEIRS, or leave the option out"
-            )));
-        }
-        let needs = |column| match places.get(column) {
-            Some(_) => Ok(()),
-            None => Err(header::missing(column, self, &places, name)),
-        };
-        if options.row_rate_hz.is_none() {
-            if places
-                .format
-                .is_some_and(|format| std::ptr::eq(format, &SIMPLEFOC))
-                && places.get(Column::T).is_none()
-            {
-                return Err(header::without_time(&SIMPLEFOC, name));
-            }
-            // A time that is known by its name is not what is missing.
-            if self.stating(Column::T, &places.columns).is_some() {
-                needs(Column::CountsLarge)?;
-            }
-            needs(Column::T)?;
-        }
-        needs(Column::CountsLarge)?;
-        for [one, other] in [
-            [Column::EdgeTick, Column::EdgeBound],
-            [Column::EdgeBound, Column::EdgeTick],
-        ] {
-            if places.get(one).is_some() {
-                needs(other)?;
-            }
-        }
+        places.check(self, options, name)?;
         Ok(places)
     }
 }
