@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use wasmparser::{
-    CompositeInnerType, DataKind, ExternalKind, FunctionBody, KnownCustom, Operator, Parser,
-    Payload, RelocationType, TypeRef,
+    CompositeInnerType, Data, DataKind, ExternalKind, FuncType, FunctionBody, KnownCustom,
+    Operator, Parser, Payload, RelocSectionReader, RelocationType, SubType, TypeRef, ValType,
 };
 
 use super::value::Kind;
@@ -46,11 +46,7 @@ impl<'a> Module<'a> {
                 Payload::TypeSection(section) => {
                     for group in section {
                         for one in group.map_err(text)?.into_types() {
-                            let CompositeInnerType::Func(function) = one.composite_type.inner
-                            else {
-                                return Err("has a type that is no function".to_owned());
-                            };
-                            types.push(function);
+                            types.push(function_type(one)?);
                         }
                     }
                 }
@@ -77,18 +73,8 @@ impl<'a> Module<'a> {
                 }
                 Payload::DataSection(section) => {
                     for segment in section {
-                        let segment = segment.map_err(text)?;
-                        let DataKind::Active { offset_expr, .. } = segment.kind else {
-                            return Err("has data without an address".to_owned());
-                        };
-                        let mut operators = offset_expr.get_operators_reader();
-                        let Operator::I32Const { value } = operators.read().map_err(text)? else {
-                            return Err("has data at an unknown address".to_owned());
-                        };
-                        if data
-                            .replace((value as u32, segment.data.to_vec()))
-                            .is_some()
-                        {
+                        let constants = constants(&segment.map_err(text)?)?;
+                        if data.replace(constants).is_some() {
                             return Err("has several segments of data".to_owned());
                         }
                     }
@@ -101,20 +87,7 @@ impl<'a> Module<'a> {
                     if let KnownCustom::Reloc(relocations) = section.as_known()
                         && section.name() == "reloc.CODE"
                     {
-                        let mut found = BTreeSet::new();
-                        for entry in relocations.entries() {
-                            let entry = entry.map_err(text)?;
-                            match entry.ty {
-                                RelocationType::MemoryAddrLeb | RelocationType::MemoryAddrSleb => {
-                                    found.insert(code + u64::from(entry.offset));
-                                }
-                                RelocationType::FunctionIndexLeb
-                                | RelocationType::GlobalIndexLeb
-                                | RelocationType::TypeIndexLeb => {}
-                                other => return Err(format!("has a relocation {other:?}")),
-                            }
-                        }
-                        addresses = Some(found);
+                        addresses = Some(addresses_of(&relocations, code)?);
                     }
                 }
                 _ => {}
@@ -122,18 +95,12 @@ impl<'a> Module<'a> {
         }
         let mut functions = Vec::new();
         for (k, (index, body)) in of_functions.into_iter().zip(bodies).enumerate() {
-            let of: &wasmparser::FuncType = &types[index as usize];
-            let kinds = |types: &[wasmparser::ValType]| -> Result<Vec<_>, String> {
+            let of: &FuncType = &types[index as usize];
+            let kinds = |types: &[ValType]| -> Result<Vec<_>, String> {
                 types.iter().map(|one| Kind::of(*one)).collect()
             };
-            let mut all = exports.iter();
-            let exported: Option<&String> =
-                all.find_map(|(name, index)| (*index == k).then_some(name));
             functions.push(Function {
-                name: exported.map_or_else(
-                    || format!("function_{k}"),
-                    |name| name.trim_start_matches("limpid_").to_owned(),
-                ),
+                name: name(k, &exports),
                 parameters: kinds(of.params())?,
                 result: kinds(of.results())?.first().copied(),
                 body,
@@ -192,6 +159,53 @@ impl<'a> Module<'a> {
         let is_it = |k: &usize| self.functions[*k].name == function.name;
         self.with_stack.iter().any(is_it)
     }
+}
+
+/// The type of a function.
+fn function_type(one: SubType) -> Result<FuncType, String> {
+    match one.composite_type.inner {
+        CompositeInnerType::Func(function) => Ok(function),
+        _ => Err("has a type that is no function".to_owned()),
+    }
+}
+
+/// Name in C of the function of index `k`.
+fn name(k: usize, exports: &BTreeMap<String, usize>) -> String {
+    let exported = exports.iter().find(|(_, index)| **index == k);
+    exported.map_or_else(
+        || format!("function_{k}"),
+        |(name, _)| name.trim_start_matches("limpid_").to_owned(),
+    )
+}
+
+/// The address and the bytes of a segment of data.
+fn constants(segment: &Data<'_>) -> Result<(u32, Vec<u8>), String> {
+    let DataKind::Active { offset_expr, .. } = &segment.kind else {
+        return Err("has data without an address".to_owned());
+    };
+    let mut operators = offset_expr.get_operators_reader();
+    let Operator::I32Const { value } = operators.read().map_err(text)? else {
+        return Err("has data at an unknown address".to_owned());
+    };
+    Ok((value as u32, segment.data.to_vec()))
+}
+
+/// Offsets in the file of the numbers that are addresses of constants. The code begins at `code`.
+fn addresses_of(relocations: &RelocSectionReader<'_>, code: u64) -> Result<BTreeSet<u64>, String> {
+    let mut found = BTreeSet::new();
+    for entry in relocations.entries() {
+        let entry = entry.map_err(text)?;
+        match entry.ty {
+            RelocationType::MemoryAddrLeb | RelocationType::MemoryAddrSleb => {
+                found.insert(code + u64::from(entry.offset));
+            }
+            RelocationType::FunctionIndexLeb
+            | RelocationType::GlobalIndexLeb
+            | RelocationType::TypeIndexLeb => {}
+            other => return Err(format!("has a relocation {other:?}")),
+        }
+    }
+    Ok(found)
 }
 
 /// An error as text.
