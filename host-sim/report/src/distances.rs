@@ -1,6 +1,7 @@
 //! Mean distance outside the haptic interval: a bar for each scenario and estimator, plants side by
 //! side.
 
+use super::bars::{BAR, BETWEEN, GAP};
 use super::canvas::{
     Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
 };
@@ -11,9 +12,6 @@ use super::text::{number, plant};
 
 /// Smallest lower end of the axis, rad/s; shorter distances do not matter.
 const FLOOR_RAD_S: f64 = 1e-4;
-/// Sizes, px.
-const BAR: f64 = 6.5;
-const BETWEEN: f64 = 12.0;
 
 /// Horizontal bars on a log axis, one panel for each plant; all `groups` have the same rate.
 ///
@@ -57,8 +55,7 @@ pub(super) fn bars(
     let head = 34.0 + legend_height(&keys, left);
     let top = head + 24.0;
     let bottom = top + row_height * scenarios.len() as f64;
-    let gap = 44.0;
-    let width = (WIDTH - left - 24.0 - (groups.len() - 1) as f64 * gap) / groups.len() as f64;
+    let width = (WIDTH - left - 24.0 - (groups.len() - 1) as f64 * GAP) / groups.len() as f64;
     figure(bottom + 40.0, title, |canvas| {
         canvas.text(title, (left, 16.0), Anchor::Left, TITLE, INK)?;
         canvas.legend(&keys, (left, 40.0))?;
@@ -67,7 +64,7 @@ pub(super) fn bars(
             canvas.text(name, (left - 10.0, y), Anchor::Right, 12.0, INK)?;
         }
         for (i, group) in groups.iter().enumerate() {
-            let left = left + i as f64 * (width + gap);
+            let left = left + i as f64 * (width + GAP);
             let plot = Plot {
                 left,
                 top,

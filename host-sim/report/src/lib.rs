@@ -9,6 +9,7 @@ use experiments::sensitivity as sensitivity_rows;
 use scoring::score::Score;
 use simulation::device::Device;
 
+mod bars;
 mod canvas;
 mod causes;
 mod closed_loop;

@@ -40,31 +40,14 @@ pub(super) fn figures(
     let mn_per_rad_s2 = first.fingertip.mn_per_nm * device.stages.small.inertia;
     let mut all = Vec::new();
     for (what, x_title) in [
-        (
-            omega as fn(&Signals, f64) -> Vec<f64>,
-            "velocity of the handle, rad/s",
-        ),
+        (omega as Motion, "velocity of the handle, rad/s"),
         (
             acceleration,
             "acceleration of the handle over 4 ms, rad/s\u{b2}",
         ),
     ] {
         let is_acceleration = all.len() >= outcomes.len();
-        // One axis for all: the range of the first reference or estimator of the lowest rate.
-        let widest = (first.runs.iter().rev())
-            .find_map(|run| run.signals.as_ref())
-            .map(|signals| {
-                let mut sizes: Vec<f64> = what(signals, first.case.rate_hz)
-                    .iter()
-                    .map(|v| v.abs())
-                    .collect();
-                sizes.sort_by(f64::total_cmp);
-                sizes
-                    .get(sizes.len().saturating_sub(1) * 995 / 1000)
-                    .copied()
-                    .unwrap_or(1.0)
-            });
-        let Some(widest) = widest.filter(|w| *w > 0.0) else {
+        let Some(widest) = range(first, what).filter(|widest| *widest > 0.0) else {
             return Ok(None);
         };
         for outcome in &outcomes {
@@ -83,15 +66,7 @@ pub(super) fn figures(
                 ..curve(TRUTH.into(), signals)
             }));
             if is_acceleration {
-                let inertia = |i: i32| {
-                    let x = widest * f64::from(i) / 40.0;
-                    (x, (mn_per_rad_s2 * x.abs()).max(1e-3))
-                };
-                let dashed = Style {
-                    dash: Dash::Dashed,
-                    ..INK.into()
-                };
-                curves.push(Curve::new(dashed, (-40..=40).map(inertia).collect()));
+                curves.push(inertia(widest, mn_per_rad_s2));
             }
             all.push(Panel {
                 heading: rate(rate_hz),
@@ -120,6 +95,35 @@ pub(super) fn figures(
     let plant = plant(first.case.plant == PlantKind::Friction);
     let title = format!("Parasitic force in free air by motion of the handle, plant {plant}");
     panels(&title, &keys, outcomes.len(), 190.0, &all).map(Some)
+}
+
+/// A motion of the handle at each tick; its second argument is the control rate, Hz.
+type Motion = fn(&Signals, f64) -> Vec<f64>;
+
+/// Range of a motion's axis, which all rates share: that of the first reference or estimator of the lowest rate, up to
+/// its quantile of 99.5 %.
+fn range(first: &Outcome, motion: Motion) -> Option<f64> {
+    let signals = (first.runs.iter().rev()).find_map(|run| run.signals.as_ref())?;
+    let mut sizes: Vec<f64> = motion(signals, first.case.rate_hz)
+        .iter()
+        .map(|v| v.abs())
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    let place = sizes.len().saturating_sub(1) * 995 / 1000;
+    Some(sizes.get(place).copied().unwrap_or(1.0))
+}
+
+/// The force of the handle's inertia against its acceleration, up to `widest`, rad/s².
+fn inertia(widest: f64, mn_per_rad_s2: f64) -> Curve {
+    let force = |i: i32| {
+        let x = widest * f64::from(i) / 40.0;
+        (x, (mn_per_rad_s2 * x.abs()).max(1e-3))
+    };
+    let dashed = Style {
+        dash: Dash::Dashed,
+        ..INK.into()
+    };
+    Curve::new(dashed, (-40..=40).map(force).collect())
 }
 
 fn omega(signals: &Signals, _: f64) -> Vec<f64> {

@@ -1,6 +1,7 @@
 //! Share of time with a parasitic force below the threshold of a fingertip: a bar for each scene
 //! and velocity source, rates side by side.
 
+use super::super::bars::{BAR, BETWEEN, GAP};
 use super::super::canvas::{
     Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
 };
@@ -12,10 +13,7 @@ use experiments::distinct::distinct;
 use experiments::transparency::Outcome;
 
 /// Sizes, px.
-const BAR: f64 = 6.5;
-const BETWEEN: f64 = 12.0;
 const LONE: f64 = 22.0;
-const GAP: f64 = 44.0;
 
 /// Horizontal bars, one panel for each rate.
 pub(super) fn shares(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, String> {
