@@ -3,10 +3,11 @@
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::device::Device;
+use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 
-/// Lowest and highest rate for which every estimator is made, Hz.
-pub const EVERY_HZ: [f64; 2] = [100.0, 1e5];
+/// Lowest and highest rate for which every estimator is made, Hz: those of control.
+pub const EVERY_HZ: [f64; 2] = [RATES_HZ.0, RATES_HZ.1];
 
 /// Largest relative difference between the rates of recordings that count as one rate.
 const SAME: f64 = 0.01;
@@ -39,7 +40,9 @@ pub fn refuses(kind: &Kind, rate_hz: f64, device: &Device, parameters: &Paramete
 ///
 /// # Errors
 /// [`Failure::Input`] that names the first recording of another rate.
-pub fn check_same<'a>(logs: impl IntoIterator<Item = (&'a str, f64)>) -> Result<(), Failure> {
+pub(crate) fn check_same<'a>(
+    logs: impl IntoIterator<Item = (&'a str, f64)>,
+) -> Result<(), Failure> {
     let mut logs = logs.into_iter();
     let Some((first, rate_hz)) = logs.next() else {
         return Ok(());

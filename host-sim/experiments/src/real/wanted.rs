@@ -6,6 +6,7 @@ use recordings::arguments::{ColumnOptions, differing_counts};
 use recordings::log::Log;
 use recordings::recording::{Recording, SLOWEST_HZ, stated_counts_per_rev};
 use simulation::device::Device;
+use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
@@ -89,7 +90,7 @@ impl Wanted {
 /// # Errors
 /// [`Failure::Input`] that names the option.
 pub fn rate(hz: f64) -> Result<f64, Failure> {
-    in_range("--rate", hz, [SLOWEST_HZ, 1e5], "Hz")
+    in_range("--rate", hz, [SLOWEST_HZ, RATES_HZ.1], "Hz")
 }
 
 /// A phase.

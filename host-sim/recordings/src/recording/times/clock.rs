@@ -5,6 +5,7 @@ use device_files::to_digits;
 use super::steps::{EVEN, Steps, differs};
 use crate::recording::Recording;
 use crate::recording::numbers::shown;
+use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 
 /// Time of each row from the row before, in periods of `rate_hz`, if the rows of `t` are uneven. That of
@@ -83,8 +84,8 @@ impl Uneven {
     }
 }
 
-/// Rows a second above which a unit of the time is more likely wrong.
-const FASTEST_HZ: f64 = 1e5;
+/// Rows a second above which a unit of the time is more likely wrong: those of the fastest control loop.
+const FASTEST_HZ: f64 = RATES_HZ.1;
 
 /// What to check where the rows of a log come at `rate_hz`; `None` if the rate is one of a control loop.
 pub(crate) fn fast(rate_hz: f64) -> Option<String> {
