@@ -13,8 +13,9 @@ use terminal::output::{note, print_to_reader};
 
 use crate::clock::Limit;
 use crate::named::explained;
+use crate::patience::AGAIN;
 use crate::port::Port;
-use crate::questions::{AGAIN, Questions};
+use crate::questions::Questions;
 use crate::refusal::{NOISE, compatible, has_started_again, is_damaged, refusal, silent};
 use crate::sent::ATTEMPTS;
 use crate::starts::Starts;

@@ -10,6 +10,9 @@ use crate::port::Port;
 /// Longest wait for an answer, and longest silence, unless an option says otherwise, s.
 pub const USUAL: &str = "2";
 
+/// Time after which a question without an answer, or a command that the board has not followed, is sent again.
+pub const AGAIN: Duration = Duration::from_millis(200);
+
 /// Parses a longest wait, s.
 ///
 /// # Errors

@@ -3,9 +3,6 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// Time after which a question is asked again.
-pub(crate) const AGAIN: Duration = Duration::from_millis(200);
-
 /// The questions without an answer. Answers come in their order; one that does not come in time is lost.
 pub(crate) struct Questions {
     /// Longest wait for an answer.
@@ -45,6 +42,7 @@ impl Questions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::patience::AGAIN;
 
     #[test]
     fn question_whose_answer_is_lost_waits_no_longer_than_the_patience() {

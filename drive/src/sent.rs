@@ -10,7 +10,7 @@ use haptic_control::SceneKind;
 use terminal::failure::Failure;
 
 use crate::named::explained;
-use crate::questions::AGAIN;
+use crate::patience::AGAIN;
 use crate::refusal::{is_damaged, refusal};
 
 /// Largest number of times that a command is sent while bytes that are no command reach the board.

@@ -28,7 +28,7 @@ pub(crate) const FRAMES_HZ: f64 = 1e3;
 /// Time between two frames from which on some between them are missing, s.
 pub(crate) const GAP_S: f64 = 2.5 / FRAMES_HZ;
 /// Interval of the status.
-const STATUS: Duration = Duration::from_millis(100);
+pub(crate) const STATUS: Duration = Duration::from_millis(100);
 
 /// The desk of a source.
 pub(crate) struct Desk {

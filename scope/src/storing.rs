@@ -2,9 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use drive::patience::AGAIN;
 use drivers::{Command, Saved, encode};
-
-use crate::undo::AGAIN;
 
 /// Longest wait until the board is certain that its amplifiers are disabled.
 const PATIENCE: Duration = Duration::from_secs(2);

@@ -1,12 +1,10 @@
 //! The settings of before a procedure that was ended from outside.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use drive::guided::Guided;
+use drive::patience::AGAIN;
 use drivers::{Command, Setting, encode};
-
-/// Time after which what the board has not followed is sent again.
-pub(crate) const AGAIN: Duration = Duration::from_millis(200);
 
 /// What brings a board back to the settings from before a procedure. A setting that the procedure has tried would
 /// otherwise be stored by the next order to store.
@@ -68,6 +66,8 @@ impl Undo {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use drivers::Settings;
 
     use super::*;

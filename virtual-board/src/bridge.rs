@@ -21,7 +21,7 @@ use crate::run::{Setup, emulate};
 /// Bytes that one look takes from the client at most.
 const CHUNK: usize = 4096;
 /// Bytes on their way to the board while which no more are taken from the client: TCP holds them back.
-const WAITING: usize = 256;
+pub const WAITING: usize = 256;
 /// Virtual time from which on the run is in real time. The emulator translates the image's code before.
 const STARTED: Duration = Duration::from_millis(100);
 /// Largest lag that is made up for. After a larger one the board does not run faster than real time, for which its client

@@ -1,9 +1,9 @@
 //! Tests of settings, orders to store and procedures.
 
+use drive::patience::AGAIN;
 use drivers::link::{Hello, Setting, Stored};
 
 use super::*;
-use crate::undo::AGAIN;
 
 fn setting(number: u8, value: f32) -> Message {
     Message::Setting(Setting {

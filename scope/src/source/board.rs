@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use drive::patience::disarm;
+use drive::patience::{AGAIN, disarm};
 use drive::port::Port;
 use drive::refusal::{compatible, silent};
 use drivers::link::{Hello, Message, Parser};
@@ -21,7 +21,6 @@ use crate::desk::{Desk, GAP_S};
 use crate::facts;
 use crate::hub::Hub;
 use crate::order::Order;
-use crate::undo::AGAIN;
 
 /// Why a procedure of another program ends.
 const FOUND_ENABLED: &str = "the board was enabled by another program";

@@ -10,6 +10,7 @@ use drivers::{Command, encode};
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
+use virtual_board::bridge::WAITING;
 use virtual_board::fault::Fault;
 use virtual_board::image::{HOW_TO_BUILD, Image};
 use virtual_board::live::{self, Acts, Client, Hold, Seen};
@@ -30,8 +31,6 @@ const SECONDS: f64 = 3.2e7;
 /// What a page says of a silent board.
 const SILENT: &str =
     "The board sends nothing: its core or its line stands still; Restart gives a new board";
-/// Bytes on their way to the board while which no order is taken: the line is slower than a page.
-const WAITING: usize = 256;
 
 /// Virtual time without a message from which on the board is silent, ns: that of a board at a port.
 const SILENT_NS: u64 = 2_000_000_000;
@@ -153,30 +152,9 @@ impl Seat {
             last_enables: [false; 2],
         }
     }
-}
 
-impl Client for Seat {
-    fn look(&mut self, seen: &Seen<'_>, acts: &mut Acts) -> bool {
-        let table = Arc::clone(&self.table);
-        let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
-        let Table {
-            desk,
-            orders,
-            restarts,
-            offset_s,
-        } = &mut *table;
-        if mem::replace(&mut self.restarts, seen.restarts) != seen.restarts {
-            self.truths = Truths::default();
-            desk.restarted();
-        }
-        self.truths.add(seen.ticks);
-        if let Some((_, on)) = seen.enables.last() {
-            self.last_enables = *on;
-        }
-        if let Some(watch) = &mut desk.fault {
-            watch.enables(&shifted(seen.enables, *offset_s));
-        }
-        desk.heard(seen.sent);
+    /// Takes what the board has sent, and gives its messages to the desk.
+    fn hear(&mut self, seen: &Seen<'_>, desk: &mut Desk, offset_s: f64) {
         let mut messages = Vec::new();
         for byte in seen.sent {
             self.parser.take(*byte, |message| messages.push(message));
@@ -193,7 +171,7 @@ impl Client for Seat {
                 _ => None,
             };
             let truth = truth.map(|(tick, instructions)| Truth {
-                t: *offset_s + tick.at_ns as f64 * 1e-9,
+                t: offset_s + tick.at_ns as f64 * 1e-9,
                 large: [tick.large.angle, tick.large.omega],
                 handle: [tick.handle.angle, tick.handle.omega],
                 felt: tick.felt,
@@ -203,64 +181,91 @@ impl Client for Seat {
             });
             desk.message(message, truth.as_ref());
         }
-        if desk.hello().is_none() && seen.at_ns.is_multiple_of(100_000_000) {
-            acts.send.extend(encode(Command::Identify));
-        }
-        let is_silent = seen.at_ns.saturating_sub(self.heard_ns) >= SILENT_NS;
-        let was_silent = mem::replace(&mut self.is_silent, is_silent);
-        if is_silent && !was_silent {
-            acts.send.extend(encode(desk.disarm(SILENCE_ENDS)));
-        }
-        // Before the orders: one that comes later is of another page.
-        let is_left = desk.hub.take_left();
+    }
+
+    /// Follows the orders of the page. Without room on the line they stay, unless the page has left.
+    fn take_orders(&self, table: &mut Table, seen: &Seen<'_>, acts: &mut Acts, is_left: bool) {
         loop {
+            // The line is slower than a page.
             let has_room = seen.waiting + acts.send.len() < WAITING;
             if !has_room && !is_left {
                 break;
             }
-            let Ok(order) = orders.try_recv() else {
+            let Ok(order) = table.orders.try_recv() else {
                 break;
             };
             match &order {
-                Order::Restart => *restarts = true,
+                Order::Restart => table.restarts = true,
                 Order::Fault { name } => {
                     if let Ok(fault) = name.parse() {
-                        let now = seen.at_ns + (*offset_s * 1e9) as u64;
+                        let now = seen.at_ns + (table.offset_s * 1e9) as u64;
                         let was_on = self.last_enables != [false; 2];
-                        desk.fault = Some(FaultWatch::new(fault, now, was_on));
+                        table.desk.fault = Some(FaultWatch::new(fault, now, was_on));
                         acts.faults.push(fault);
                     }
                 }
                 _ => {}
             }
             // What has to wait would follow the disarm of the page that has left.
-            if (is_silent || !has_room) && order.needs_an_answer() {
+            if (self.is_silent || !has_room) && order.needs_an_answer() {
                 continue;
             }
-            if let Some(command) = desk.order(&order) {
+            if let Some(command) = table.desk.order(&order) {
                 acts.send.extend(encode(command));
             }
         }
+    }
+}
+
+impl Client for Seat {
+    fn look(&mut self, seen: &Seen<'_>, acts: &mut Acts) -> bool {
+        let table = Arc::clone(&self.table);
+        let mut locked = table.lock().unwrap_or_else(PoisonError::into_inner);
+        let table = &mut *locked;
+        if mem::replace(&mut self.restarts, seen.restarts) != seen.restarts {
+            self.truths = Truths::default();
+            table.desk.restarted();
+        }
+        self.truths.add(seen.ticks);
+        if let Some((_, on)) = seen.enables.last() {
+            self.last_enables = *on;
+        }
+        if let Some(watch) = &mut table.desk.fault {
+            watch.enables(&shifted(seen.enables, table.offset_s));
+        }
+        table.desk.heard(seen.sent);
+        self.hear(seen, &mut table.desk, table.offset_s);
+        if table.desk.hello().is_none() && seen.at_ns.is_multiple_of(100_000_000) {
+            acts.send.extend(encode(Command::Identify));
+        }
+        let is_silent = seen.at_ns.saturating_sub(self.heard_ns) >= SILENT_NS;
+        let was_silent = mem::replace(&mut self.is_silent, is_silent);
+        if is_silent && !was_silent {
+            acts.send.extend(encode(table.desk.disarm(SILENCE_ENDS)));
+        }
+        // Before the orders: one that comes later is of another page.
+        let is_left = table.desk.hub.take_left();
+        self.take_orders(table, seen, acts, is_left);
         // After the orders of the page that has left.
         if is_left {
-            acts.send.extend(encode(desk.disarm(PAGE_LEFT)));
+            acts.send.extend(encode(table.desk.disarm(PAGE_LEFT)));
         }
-        acts.send.extend(desk.take_bytes());
-        if let Some(Order::Hand { at }) = desk.hub.take_hand() {
+        acts.send.extend(table.desk.take_bytes());
+        if let Some(Order::Hand { at }) = table.desk.hub.take_hand() {
             self.is_held = at.is_some();
             acts.hand = Some(at.map_or(Hold::Free, Hold::At));
-        } else if self.is_held && desk.hub.is_abandoned() {
+        } else if self.is_held && table.desk.hub.is_abandoned() {
             self.is_held = false;
             acts.hand = Some(Hold::Free);
         }
         let silent = is_silent.then_some(SILENT);
-        desk.tell(|| {
+        table.desk.tell(|| {
             let mut status = self.pacer.json();
             status["silent"] = silent.into();
             status
         });
-        let goes_on = !desk.hub.stops() && !*restarts;
-        drop(table);
+        let goes_on = !table.desk.hub.stops() && !table.restarts;
+        drop(locked);
         self.pacer.wait(seen.at_ns);
         goes_on
     }

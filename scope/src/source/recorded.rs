@@ -18,6 +18,7 @@ use terminal::output::note;
 
 use super::Source;
 use crate::batch::Batch;
+use crate::desk::STATUS;
 use crate::estimators::Estimators;
 use crate::facts;
 use crate::hub::{Event, Hub};
@@ -27,8 +28,6 @@ use crate::order::Order;
 const STEP: Duration = Duration::from_millis(16);
 /// Rows of a step at most: a long step at a high speed sends fewer, and takes longer.
 const MOST: usize = 2000;
-/// Interval of the status.
-const STATUS: Duration = Duration::from_millis(100);
 
 /// A recording with its estimates.
 pub(crate) struct Recorded {
