@@ -21,7 +21,7 @@ use crate::named::{self, Known, Tuning};
 use crate::port::{Port, list};
 use crate::record::Recorder;
 use crate::session::{self, Plan};
-use crate::settings;
+use crate::settings::{self, Assignment};
 use crate::timed::Change;
 use crate::watch::state;
 
@@ -61,41 +61,56 @@ fn asked(arguments: &[OsString]) -> String {
     }
 }
 
+/// How the board is reached.
+struct Connection {
+    /// Name of the port; `None` for the one port with a board.
+    port: Option<String>,
+    /// Longest wait for an answer.
+    patience: Duration,
+}
+
+impl Connection {
+    fn open(&self) -> Result<Board, Failure> {
+        let port = Port::open(self.port.as_deref())?;
+        Ok(Board::new(port, self.patience))
+    }
+
+    /// A board that speaks the protocol of this tool, and its identity.
+    fn compatible(&self) -> Result<(Board, Answer), Failure> {
+        let mut board = self.open()?;
+        let answer = board.compatible()?;
+        Ok((board, answer))
+    }
+}
+
 fn act(arguments: Arguments) -> Result<(), Failure> {
-    let Arguments {
-        port,
-        timeout,
-        action,
-    } = arguments;
-    let open = || -> Result<Board, Failure> {
-        let port = Port::open(port.as_deref())?;
-        Ok(Board::new(port, Duration::from_secs_f64(timeout)))
+    let connection = Connection {
+        port: arguments.port,
+        patience: Duration::from_secs_f64(arguments.timeout),
     };
-    match action {
-        Action::List(_) => match port {
+    match arguments.action {
+        Action::List(_) => match connection.port {
             None => print_ports(),
             Some(name) => Err(Failure::Input(format!(
                 "--port {name}: list opens no port; leave --port out"
             ))),
         },
         Action::Info => {
-            let answer = open()?.identify()?;
+            let answer = connection.open()?.identify()?;
             print_bytes(identity::text(&answer).as_bytes())
         }
         Action::Disarm => {
             // Every protocol has this command, so that nothing is asked before it.
-            let frame = open()?.disarm()?;
+            let frame = connection.open()?.disarm()?;
             note(format_args!("disarmed: {}", state(&frame)));
             Ok(())
         }
         Action::Arm(hold) => {
-            let mut board = open()?;
-            let answer = board.compatible()?;
+            let (mut board, answer) = connection.compatible()?;
             session::armed(&mut board, &answer, hold.plan(&answer))
         }
         Action::KeepAlive(hold) => {
-            let mut board = open()?;
-            let answer = board.compatible()?;
+            let (mut board, answer) = connection.compatible()?;
             session::kept_alive(&mut board, &answer, hold.plan(&answer))
         }
         Action::Select {
@@ -111,73 +126,80 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
             for timed in &estimator {
                 changes.push((timed.at_s, timed.estimator()?));
             }
-            render(open()?, scene, changes, hold)
+            render(connection.open()?, scene, changes, hold)
         }
         Action::Torque { value, hold } => {
             let torque = Tuning::new(SceneKind::Torque, "torque", value)?;
             let changes = vec![(0.0, Change::Tuning(torque))];
-            render(open()?, SceneKind::Torque, changes, hold)
+            render(connection.open()?, SceneKind::Torque, changes, hold)
         }
         Action::Tune {
             scene,
             parameter,
             value,
-        } => {
-            let tuning = Tuning::new(scene, &parameter, value)?;
-            if tuning.scene() == SceneKind::Torque {
-                // The set-point is zero each time its scene is selected.
-                return Err(Failure::Input(format!(
-                    "{tuning}: lasts only while the scene runs; use cargo drive torque VALUE"
-                )));
-            }
-            let mut board = open()?;
-            tuning.check(&board.compatible()?.hello)?;
-            board.change(tuning.command(), &tuning.to_string())?;
-            note(format_args!("{tuning}, until the next reset"));
-            Ok(())
-        }
+        } => tune(&connection, &Tuning::new(scene, &parameter, value)?),
         Action::Estimator { number } => {
-            let mut board = open()?;
-            board.compatible()?;
+            let (mut board, _) = connection.compatible()?;
             let name = named::called(number);
             board.change(Command::Estimator(number), &name)?;
             note(format_args!("{name}, until the next reset"));
             Ok(())
         }
         Action::Settings { assignments, store } => {
-            let mut board = open()?;
-            let hello = board.compatible()?.hello;
-            for it in &assignments {
-                if it.setting == Setting::Estimator {
-                    named::numbered(it.value as u8, &hello)
-                        .map_err(|error| format!("estimator={}: {error}", it.value))?;
-                }
-            }
-            settings::change(&mut board, &assignments)?;
-            print_bytes(settings::table(&mut board)?.as_bytes())?;
-            if store {
-                return settings::store(&mut board);
-            }
-            if !assignments.is_empty() {
-                note("until the next reset; --store keeps them");
-            }
-            Ok(())
+            change_settings(&connection, &assignments, store)
         }
-        Action::BringUp { turns, store } => bring_up::run(&mut open()?, turns, store),
-        Action::Calibrate { store } => calibrate::run(&mut open()?, store),
+        Action::BringUp { turns, store } => bring_up::run(&mut connection.open()?, turns, store),
+        Action::Calibrate { store } => calibrate::run(&mut connection.open()?, store),
         Action::Record { out, seconds } => {
-            let mut board = open()?;
-            let answer = board.compatible()?;
+            let (mut board, answer) = connection.compatible()?;
             let recorder = Some(Recorder::new(&answer.hello, out));
             let plan = shown(None, seconds, recorder);
             session::unarmed(&mut board, &answer, plan)
         }
         Action::Watch { every, seconds } => {
-            let mut board = open()?;
-            let answer = board.compatible()?;
+            let (mut board, answer) = connection.compatible()?;
             session::unarmed(&mut board, &answer, shown(Some(every), seconds, None))
         }
     }
+}
+
+/// Tunes a parameter until the next reset.
+fn tune(connection: &Connection, tuning: &Tuning) -> Result<(), Failure> {
+    if tuning.scene() == SceneKind::Torque {
+        // The set-point is zero each time its scene is selected.
+        return Err(Failure::Input(format!(
+            "{tuning}: lasts only while the scene runs; use cargo drive torque VALUE"
+        )));
+    }
+    let (mut board, answer) = connection.compatible()?;
+    tuning.check(&answer.hello)?;
+    board.change(tuning.command(), &tuning.to_string())?;
+    note(format_args!("{tuning}, until the next reset"));
+    Ok(())
+}
+
+/// Changes settings, shows all of them, and stores them if `store` says so.
+fn change_settings(
+    connection: &Connection,
+    assignments: &[Assignment],
+    store: bool,
+) -> Result<(), Failure> {
+    let (mut board, answer) = connection.compatible()?;
+    for it in assignments {
+        if it.setting == Setting::Estimator {
+            named::numbered(it.value as u8, &answer.hello)
+                .map_err(|error| format!("estimator={}: {error}", it.value))?;
+        }
+    }
+    settings::change(&mut board, assignments)?;
+    print_bytes(settings::table(&mut board)?.as_bytes())?;
+    if store {
+        return settings::store(&mut board);
+    }
+    if !assignments.is_empty() {
+        note("until the next reset; --store keeps them");
+    }
+    Ok(())
 }
 
 /// Arms the board and renders a scene.
