@@ -24,8 +24,8 @@ pub struct Density {
 }
 
 impl Density {
-    /// RMS of the signal's components within `band_hz`, in the signal's unit; `None` if the band
-    /// begins above half the sample rate.
+    /// RMS of the signal's components from `low` to `high`, Hz, in the signal's unit; `None` unless `low` is
+    /// below half the sample rate.
     ///
     /// A bin at the limit of the band has the weight of its part inside.
     #[must_use]

@@ -109,7 +109,7 @@ impl Plant {
     }
 
     /// Changes the coupler's damping b, N.m.s/rad.
-    pub fn set_damping(&mut self, damping: f64) {
+    pub(crate) fn set_damping(&mut self, damping: f64) {
         self.damping = damping;
     }
 

@@ -42,7 +42,7 @@ pub fn wrapped(text: &str, indent: usize) -> String {
 
 /// `text` with its control characters escaped, so that a name from a file does not command a terminal.
 #[must_use]
-pub fn harmless(text: &str) -> Cow<'_, str> {
+pub(crate) fn harmless(text: &str) -> Cow<'_, str> {
     if !text.contains(char::is_control) {
         return Cow::Borrowed(text);
     }

@@ -211,7 +211,7 @@ impl ReadOptions {
     ///
     /// # Errors
     /// [`Failure::Input`] if the rate is not positive and finite.
-    pub fn set_row_rate(&mut self, hz: f64) -> Result<(), Failure> {
+    pub(crate) fn set_row_rate(&mut self, hz: f64) -> Result<(), Failure> {
         if !(hz > 0.0 && hz.is_finite()) {
             return Err(Failure::Input(format!(
                 "--row-rate {hz}: the rate of the rows must be positive and finite (Hz)"
