@@ -2,38 +2,19 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{
-    Conditions, Dac, Exact, FeedbackEncoder, Hand, Loop, environments_with, estimator, usual,
-};
+use experiments::closed_loop::{Conditions, Dac, Exact, Hand, Loop, environments_with};
 use experiments::feel::{Case, Settings, Without, feel};
 use experiments::transparency::attribution::CAUSES;
 use experiments::transparency::{Attribution, Cause, Ledger, Part};
-use haptic_control::{LoopPoles, SceneKind, Torque};
+use haptic_control::{SceneKind, Torque};
 use simulation::device::Device;
+
+use crate::loops::on_default;
 
 const HANDLE: &str = "kalman-triple-steady";
 
 fn with(name: &str, scene: SceneKind, rate_hz: f64) -> Loop {
-    let device = Device::default();
-    let on = |name, counts| {
-        let kind = Kind::named(name).unwrap();
-        estimator(kind, &device, counts, rate_hz, &Parameters::default()).unwrap()
-    };
-    let assumed = device.stages;
-    Loop {
-        large: on(name, assumed.large.counts_per_rev),
-        handle: on(HANDLE, assumed.small.counts_per_rev),
-        scene: usual(scene, &assumed, rate_hz).unwrap(),
-        hand: scene.facts().hand.into(),
-        device,
-        assumed,
-        rate_hz,
-        seed: 1,
-        encoder: FeedbackEncoder::Own,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-        offsets_a: [0.0; 2],
-    }
+    on_default(scene, rate_hz, [name, HANDLE])
 }
 
 /// The same run on a device without these causes, known to the controller.

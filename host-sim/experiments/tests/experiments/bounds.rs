@@ -1,13 +1,10 @@
 //! Tests of the controllers that know more than a board, whose force bounds that of others.
 
-use catalogue::estimators::Kind;
-use catalogue::parameters::Parameters;
-use experiments::closed_loop::{
-    Conditions, Dac, Exact, FeedbackEncoder, Loop, Oracle, TickState, estimator, usual,
-};
-use haptic_control::{LoopPoles, SceneKind};
-use simulation::device::Device;
+use experiments::closed_loop::{Conditions, Dac, Exact, Loop, Oracle, TickState};
+use haptic_control::SceneKind;
 use simulation::plant::Grip;
+
+use crate::loops::on_default;
 
 const SEED: u64 = 1;
 const SECONDS: f64 = 4.0;
@@ -15,25 +12,9 @@ const SECONDS: f64 = 4.0;
 const SKIP_S: f64 = 0.1;
 
 fn with(scene: SceneKind, rate_hz: f64) -> Loop {
-    let device = Device::default();
-    let assumed = device.stages;
-    let on = |counts| {
-        let kind = Kind::named("kalman-triple").unwrap();
-        estimator(kind, &device, counts, rate_hz, &Parameters::default()).unwrap()
-    };
     Loop {
-        large: on(assumed.large.counts_per_rev),
-        handle: on(assumed.small.counts_per_rev),
-        scene: usual(scene, &assumed, rate_hz).unwrap(),
-        hand: scene.facts().hand.into(),
-        device,
-        assumed,
-        rate_hz,
         seed: SEED,
-        encoder: FeedbackEncoder::Own,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-        offsets_a: [0.0; 2],
+        ..on_default(scene, rate_hz, ["kalman-triple"; 2])
     }
 }
 

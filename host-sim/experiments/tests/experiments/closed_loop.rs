@@ -2,16 +2,18 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
-use experiments::closed_loop::{Conditions, FeedbackEncoder, Hand, Loop, Press, estimator, usual};
+use experiments::closed_loop::{Conditions, Hand, Loop, Press, usual};
 use experiments::compare::Settings;
 use experiments::transparency::{
     Fingertip, LoopCase, LoopSettings, Parasitic, bandwidth_hz, compare, sweep,
 };
-use haptic_control::{AnyScene, Inertia, LoopPoles, SceneKind};
+use haptic_control::{AnyScene, Inertia, SceneKind};
 use scoring::score::Wanted;
 use simulation::device::Device;
 use simulation::plant::Grip;
 use std::f64::consts::TAU;
+
+use crate::loops;
 
 fn settings(names: &[&str]) -> LoopSettings {
     LoopSettings {
@@ -30,21 +32,9 @@ fn settings(names: &[&str]) -> LoopSettings {
 
 /// A run of `scene` with the steady Kalman filter for both velocities.
 fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Loop {
-    let kind = Kind::named("kalman-triple-steady").unwrap();
-    let on = |counts| estimator(kind, device, counts, rate_hz, &Parameters::default()).unwrap();
     Loop {
-        device: device.clone(),
-        assumed: device.stages,
-        scene,
         hand,
-        rate_hz,
-        seed: 1,
-        large: on(device.stages.large.counts_per_rev),
-        handle: on(device.stages.small.counts_per_rev),
-        encoder: FeedbackEncoder::Own,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-        offsets_a: [0.0; 2],
+        ..loops::on(device, scene, rate_hz, ["kalman-triple-steady"; 2])
     }
 }
 

@@ -1,37 +1,21 @@
 //! Faults of the encoders in closed loop: monitor and balance end them, scene by scene.
 
-use catalogue::estimators::Kind;
-use catalogue::parameters::Parameters;
-use experiments::closed_loop::{
-    Conditions, EncoderFault, Faulty, FeedbackEncoder, Hand, Loop, Press, estimator, usual,
-};
+use experiments::closed_loop::{Conditions, EncoderFault, Faulty, Hand, Loop, Press};
 use experiments::robust::corners::corners;
-use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
-use simulation::device::Device;
+use haptic_control::{SceneKind, SimulatedHand, Stop};
+
+use crate::loops::on_default;
 
 const FAULT_S: f64 = 0.5;
 
 fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
-    let device = Device::default();
-    let kind = Kind::named("kalman-triple-steady").unwrap();
-    let on =
-        |counts: u32| estimator(kind, &device, counts, rate_hz, &Parameters::default()).unwrap();
     Loop {
-        large: on(device.stages.large.counts_per_rev),
-        handle: on(device.stages.small.counts_per_rev),
-        scene: usual(scene, &device.stages, rate_hz).unwrap(),
-        assumed: device.stages,
-        device,
         hand: match scene.facts().hand {
             SimulatedHand::WallPress => Hand::Pushing,
             _ => Hand::Moving,
         },
-        rate_hz,
         seed,
-        encoder: FeedbackEncoder::Own,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-        offsets_a: [0.0; 2],
+        ..on_default(scene, rate_hz, ["kalman-triple-steady"; 2])
     }
 }
 

@@ -3,15 +3,15 @@
 
 use std::fmt::Write as _;
 
-use catalogue::estimators::Kind;
-use catalogue::parameters::Parameters;
-use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, usual};
+use experiments::closed_loop::{Hand, Loop, usual};
 use experiments::identify::{Identification, Known, Quantity, identify};
-use haptic_control::{LoopPoles, SceneKind};
+use haptic_control::SceneKind;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use recordings::recording::Recording;
 use simulation::device::Device;
+
+use crate::loops;
 
 /// A device whose constants are up to 30 % (friction, amplifier 50 %) off, on a real disc.
 pub(super) fn device(seed: u64) -> Device {
@@ -37,22 +37,11 @@ pub(super) fn device(seed: u64) -> Device {
 
 /// The excitation of that device at 10 kHz, all rows or each `every`-th.
 pub(super) fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
-    let kind = Kind::named("kalman-triple-steady").unwrap();
-    let parameters = Parameters::default();
-    let estimator = |counts| estimator(kind, device, counts, 10e3, &parameters).unwrap();
+    let scene = usual(SceneKind::Excite, &device.stages, 10e3).unwrap();
     let run = Loop {
-        device: device.clone(),
-        assumed: device.stages,
-        scene: usual(SceneKind::Excite, &device.stages, 10e3).unwrap(),
         hand,
-        rate_hz: 10e3,
         seed,
-        large: estimator(device.stages.large.counts_per_rev),
-        handle: estimator(device.stages.small.counts_per_rev),
-        encoder: FeedbackEncoder::Own,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-        offsets_a: [0.0; 2],
+        ..loops::on(device, scene, 10e3, ["kalman-triple-steady"; 2])
     };
     run.record(165_000, every).unwrap()
 }

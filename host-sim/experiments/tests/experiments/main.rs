@@ -10,5 +10,6 @@ mod confidence;
 mod encoder_faults;
 mod identify;
 mod identify_encoders;
+mod loops;
 mod reference;
 mod scaled_presets;
