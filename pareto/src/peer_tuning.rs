@@ -9,7 +9,7 @@ use catalogue::estimators::sample;
 use device_files::to_digits;
 use estimator_core::{Hertz, Signals};
 use experiments::compare::interval;
-use experiments::tune::{FIRST_SEED, RMS_WEIGHT};
+use experiments::tune::{FILTER_SECONDS, FILTER_SEEDS, FIRST_SEED, RMS_WEIGHT};
 use scoring::score::{Truth, Wanted};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
@@ -17,9 +17,6 @@ use simulation::simulate::simulate;
 use simulation::trace::{Columns, Trace};
 
 use crate::traces::{COUNTS_PER_REV, RATES_HZ, counts_per_tick};
-
-const SEEDS: u64 = 3;
-const SECONDS: f64 = 10.0;
 
 /// Points of a grid, and number of grids, each between the neighbours of the best point.
 const GRID: usize = 25;
@@ -29,12 +26,12 @@ const ROUNDS: usize = 3;
 type Track<'a> = (&'a Trace, Truth<'a>);
 
 fn traces(device: &Device, rate_hz: f64) -> Result<Vec<Trace>, String> {
-    let seeds = FIRST_SEED..FIRST_SEED + SEEDS;
+    let seeds = FIRST_SEED..FIRST_SEED + FILTER_SEEDS;
     let runs = ScenarioName::of(&[Role::Tuning])
         .into_iter()
         .flat_map(|scenario| seeds.clone().map(move |seed| (scenario, seed)));
     let columns = Columns::default();
-    runs.map(|(scenario, seed)| simulate(device, scenario, rate_hz, seed, SECONDS, columns))
+    runs.map(|(scenario, seed)| simulate(device, scenario, rate_hz, seed, FILTER_SECONDS, columns))
         .collect()
 }
 

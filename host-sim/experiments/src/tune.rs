@@ -29,7 +29,7 @@ use terminal::failure::Failure;
 pub use image_section::image_section;
 pub use logs::{LogFile, LogPlan, LogSearch, LogTuned};
 pub use plan::{Group, Plan};
-pub use recipe::Wishes;
+pub use recipe::{FILTER_SECONDS, FILTER_SEEDS, Wishes};
 
 use search::{Least, best_values, ends_of_ranges};
 

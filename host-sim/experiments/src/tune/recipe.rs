@@ -5,6 +5,11 @@ use simulation::scenario::{Role, ScenarioName};
 
 use super::Group;
 
+/// Number of tuning seeds of filters.
+pub const FILTER_SEEDS: u64 = 3;
+/// Duration of each run on which filters are tuned, s.
+pub const FILTER_SECONDS: f64 = 10.0;
+
 /// Defaults of the tuning options for one kind of estimators.
 #[derive(Clone, Copy, Debug)]
 struct Recipe {
@@ -22,8 +27,8 @@ impl Recipe {
     /// For filters: the paper's experiment.
     const PLAIN: Self = Self {
         roles: &[Role::Tuning],
-        seeds: 3,
-        seconds: 10.0,
+        seeds: FILTER_SEEDS,
+        seconds: FILTER_SECONDS,
         perturbed: false,
     };
     /// For observers. Their error never leaves the haptic interval in the paper's experiment, so
