@@ -56,7 +56,7 @@ pub const SCENARIOS: [ScenarioName; 5] = {
 /// Whether the filter has the true model of the plant in `scenario`, so that no estimator with its signals
 /// can have a smaller error.
 #[must_use]
-pub fn is_bound(scenario: ScenarioName) -> bool {
+pub(crate) fn is_bound(scenario: ScenarioName) -> bool {
     scenario.role() == Role::Linear
 }
 

@@ -63,7 +63,7 @@ pub fn replay(
 ///
 /// # Errors
 /// As [`replay`].
-pub fn replay_against(
+pub(crate) fn replay_against(
     reference: Option<&Reference>,
     recording: &Recording,
     name: &str,

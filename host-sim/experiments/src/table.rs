@@ -122,7 +122,7 @@ fn estimators(rows: &[Row]) -> Column {
 
 /// Mean distance of one estimator over several cases of equal length, in % of finite difference.
 #[must_use]
-pub fn pooled_pct<'a>(scores: impl Iterator<Item = &'a Score>) -> Option<f64> {
+pub(crate) fn pooled_pct<'a>(scores: impl Iterator<Item = &'a Score>) -> Option<f64> {
     let (mut of, mut whole) = (0.0, 0.0);
     for score in scores {
         of += score.distance_rad_s?;
@@ -138,7 +138,7 @@ fn same_case(a: &Row, b: &Row) -> bool {
 
 /// A line on the scenarios in which `what`, which an error is divided by, has no error; none without a
 /// scenario.
-pub fn no_percentage<'a>(scenarios: impl Iterator<Item = &'a str>, what: &str) -> String {
+pub(crate) fn no_percentage<'a>(scenarios: impl Iterator<Item = &'a str>, what: &str) -> String {
     let names = distinct(scenarios);
     if names.is_empty() {
         return String::new();

@@ -28,7 +28,7 @@ pub const DAMPING: (f64, f64) = (1e-5, 0.08192);
 /// Dampings of the walls, as fractions of the largest damping without a wall.
 pub const PARTS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 0.75];
 /// Largest ratio of the first failing value to the bound.
-pub const RESOLUTION: f64 = 1.03;
+pub(crate) const RESOLUTION: f64 = 1.03;
 
 /// Estimators, control rate and large encoder of one loop, for which a boundary is searched.
 #[derive(Clone, Copy, Debug)]

@@ -125,7 +125,7 @@ impl Without {
 
     /// Whether the currents are not rounded.
     #[must_use]
-    pub fn removes_dac(&self) -> bool {
+    pub(crate) fn removes_dac(&self) -> bool {
         self.removes(&[Self::Dac])
     }
 
@@ -156,7 +156,7 @@ impl Without {
     /// scene that reads the acceleration the current itself changes the torque that the oracle is to reach,
     /// and currents that reach it at every tick grow without bound.
     #[must_use]
-    pub fn is_possible_in(self, scene: SceneKind) -> bool {
+    pub(crate) fn is_possible_in(self, scene: SceneKind) -> bool {
         let needs = scene.facts().needs;
         match self.oracle() {
             None => true,

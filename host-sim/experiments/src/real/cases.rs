@@ -123,7 +123,7 @@ impl Recordings {
     ///
     /// # Errors
     /// As [`Coarse::along`].
-    pub fn recording_at(&self, case: &Case, rate_hz: f64) -> Result<Recording, Failure> {
+    pub(crate) fn recording_at(&self, case: &Case, rate_hz: f64) -> Result<Recording, Failure> {
         let (source, data) = &self.0[case.recording];
         let coarse = Coarse {
             rate_hz,

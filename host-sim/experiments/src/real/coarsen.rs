@@ -21,7 +21,7 @@ const SAME_INSTANT_S: f64 = 1e-9;
 
 /// Smallest number of fine counts in a coarse one. Below it the staircase of the fine encoder
 /// decides where the edges are.
-pub const FEWEST_FINE_COUNTS: f64 = 2.0;
+pub(crate) const FEWEST_FINE_COUNTS: f64 = 2.0;
 
 /// Largest rate, in mean rates of the rows: times in a file are rounded.
 const ROUNDED: f64 = 1.0001;
@@ -43,7 +43,7 @@ impl Coarse {
     /// Whether `fine` is fine and fast enough: at least [`FEWEST_FINE_COUNTS`] in a coarse count, and
     /// a row a tick on the average.
     #[must_use]
-    pub fn is_resolved_by(&self, fine: &Fine) -> bool {
+    pub(crate) fn is_resolved_by(&self, fine: &Fine) -> bool {
         self.has_counts() && self.has_rows(fine)
     }
 

@@ -38,7 +38,7 @@ impl Fine {
 
     /// Mean rate of the rows, Hz.
     #[must_use]
-    pub fn mean_rate_hz(&self) -> f64 {
+    pub(crate) fn mean_rate_hz(&self) -> f64 {
         let last = self.t.len() - 1;
         last as f64 / (self.t[last] - self.t[0])
     }

@@ -17,9 +17,9 @@ pub const HANDLE_RAD_S: f64 = 60.0;
 pub const FELT_NM: f64 = 0.150;
 /// Largest allowed residual oscillation besides that of the scene itself, N.m RMS: 29 mN at the
 /// fingertip, three times its threshold. Friction at reversals of a hand's motion causes half of it.
-pub const OSCILLATION_NM: f64 = 1e-3;
+pub(crate) const OSCILLATION_NM: f64 = 1e-3;
 /// Lowest frequency of an oscillation of the loop, Hz; below it are the hand's motion and tremor.
-pub const OSCILLATION_HZ: f64 = 20.0;
+pub(crate) const OSCILLATION_HZ: f64 = 20.0;
 
 /// Largest allowed residual oscillation of a scene, N.m RMS.
 ///

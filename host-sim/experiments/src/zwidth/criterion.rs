@@ -130,7 +130,7 @@ impl Evaluator {
 
 /// Whether a torque (N.m, evenly sampled) has a sustained oscillation above `threshold`.
 #[must_use]
-pub fn is_limit_cycle(felt: &[f64], threshold: f64) -> bool {
+pub(crate) fn is_limit_cycle(felt: &[f64], threshold: f64) -> bool {
     let (first, second) = felt.split_at(felt.len() / 2);
     let (first, second) = (amplitude(first), amplitude(second));
     second > threshold && second >= SUSTAINED * first
