@@ -28,7 +28,7 @@ pub const COUNTED_HZ: u32 = 10_000;
 /// The estimator with the same cost of every update.
 pub const STEADY: &str = "kalman-triple-steady";
 /// [`STEADY`] in the image with all that can be added to one.
-pub const EVERY_OPTION: &str = "kalman-triple-steady, every option";
+pub(crate) const EVERY_OPTION: &str = "kalman-triple-steady, every option";
 /// Name of the estimator in a scene that uses no velocity.
 pub const NONE: &str = "none";
 

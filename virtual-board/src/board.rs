@@ -45,7 +45,7 @@ pub struct Part {
 impl Part {
     /// Codes on PA4 and PA5.
     #[must_use]
-    pub fn dac_codes(&self) -> [Option<u16>; 2] {
+    pub(crate) fn dac_codes(&self) -> [Option<u16>; 2] {
         Dac::codes(self.stm32.bus().slots()[self.dac_slot].registers())
     }
 

@@ -6,7 +6,7 @@ const REFILL: u32 = 2;
 
 /// Cycles of interrupt entry and return: 12 and 10, and 17 more each for the registers of an
 /// interrupted task that uses the FPU.
-pub const INTERRUPT: u32 = 12 + 10 + 2 * 17;
+pub(crate) const INTERRUPT: u32 = 12 + 10 + 2 * 17;
 
 /// Cycles of the instruction of these halves; `taken` if it branches.
 #[must_use]

@@ -55,7 +55,7 @@ pub struct FlashTimes {
 
 impl FlashTimes {
     /// Typical times.
-    pub const TYPICAL: Self = Self {
+    pub(crate) const TYPICAL: Self = Self {
         program_ns: 16_000,
         erase_ns: 400_000_000,
     };

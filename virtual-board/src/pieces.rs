@@ -116,7 +116,7 @@ impl Path {
 
     /// Fetches from flash.
     #[must_use]
-    pub fn fetches(&self) -> Fetches {
+    pub(crate) fn fetches(&self) -> Fetches {
         self.fetch.fetches()
     }
 }

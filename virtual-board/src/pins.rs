@@ -62,7 +62,7 @@ pub const PORT: [Wire; 2] = [
 ];
 
 /// Set values, enables and ready lines of the amplifiers, large motor first, and the interlock loop.
-pub const AMPLIFIERS: [Wire; 7] = [
+pub(crate) const AMPLIFIERS: [Wire; 7] = [
     ('A', 4, Mode::Analog, "large set value, DAC_OUT1"),
     ('A', 5, Mode::Analog, "small set value, DAC_OUT2"),
     ('C', 8, Mode::Function(3), "large enable, TIM8_CH3"),

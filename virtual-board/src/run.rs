@@ -26,7 +26,7 @@ pub use setup::{DacError, LEAST_LOAD_OHM, Setup};
 pub const RATE_HZ: f64 = 10e3;
 
 /// Rate at which the motion of the hand is given and the state of the plant is recorded, Hz.
-pub const HAND_HZ: f64 = 10e3;
+pub(crate) const HAND_HZ: f64 = 10e3;
 
 /// Current per DAC code from mid-scale, A: large motor, small motor.
 pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];

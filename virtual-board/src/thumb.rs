@@ -41,7 +41,7 @@ pub fn branches(base: u64, code: &[u8]) -> impl Iterator<Item = u64> {
 
 /// Target of an unconditional wide branch or call (encodings T4 of B and T1 of BL).
 #[must_use]
-pub fn wide_branch(first: u16, second: u16, here: u64) -> Option<u64> {
+pub(crate) fn wide_branch(first: u16, second: u16, here: u64) -> Option<u64> {
     if first >> 11 != 0b11110 || !matches!(second >> 12 & 0b1101, 0b1001 | 0b1101) {
         return None;
     }
