@@ -1,9 +1,10 @@
 //! Summary of a run, as `cargo board` prints it.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 use drivers::NO_ESTIMATOR;
 use haptic_control::SceneKind;
+use recordings::telemetry::Telemetry;
 
 use crate::budget::{self, SETTLED_S};
 use crate::run::{Outcome, Setup};
@@ -26,32 +27,64 @@ fn no_force(seconds: f64, was_reset: bool) -> String {
     }
 }
 
+/// Lines of a name and a text each.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn add(&mut self, name: &str, text: impl Display) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "{name:<22}{text}");
+    }
+}
+
 /// The summary of a run of `scene`, one line per quantity.
 pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> String {
-    let mut out = String::new();
-    let mut line = |name: &str, text: String| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(out, "{name:<22}{text}");
-    };
+    let mut lines = Lines::default();
     let speed = setup.seconds / outcome.wall.as_secs_f64();
-    line(
+    lines.add(
         "run",
         format!(
             "{} s of {}, seed {}, {speed:.1} virtual s a second",
             setup.seconds, scene, setup.seed
         ),
     );
+    add_findings(&mut lines, setup, outcome);
+    add_ticks(&mut lines, outcome);
+    add_frames(&mut lines, &outcome.telemetry);
+    for (at_ns, [large, small]) in outcome.enables.iter().skip(1) {
+        let name = |on: &bool| if *on { "on" } else { "off" };
+        let at = *at_ns as f64 * 1e-9;
+        lines.add(
+            "amplifiers",
+            format!("{at:.5} s: large {}, small {}", name(large), name(small)),
+        );
+    }
+    let diameter = setup.device.handle.diameter_m;
+    let force = match outcome.parasitic(SETTLED_S, diameter) {
+        Some(force) => format!("{:.2} mN rms, {:.2} mN at most", force.rms_mn, force.max_mn),
+        None => format!(
+            "unknown, because {}",
+            no_force(setup.seconds, !outcome.restarts.is_empty())
+        ),
+    };
+    lines.add("parasitic force", force);
+    lines.0
+}
+
+/// What is wrong with the image or with the run, and the image's log.
+fn add_findings(lines: &mut Lines, setup: &Setup, outcome: &Outcome) {
     for complaint in &outcome.complaints {
-        line("WIRING", complaint.clone());
+        lines.add("WIRING", complaint);
     }
     for objection in &outcome.objections {
-        line("NOT MODELLED", objection.clone());
+        lines.add("NOT MODELLED", objection);
     }
     for said in &outcome.telemetry.log {
-        line("log", said.clone());
+        lines.add("log", said);
     }
     for restart in &outcome.restarts {
-        line(
+        lines.add(
             "RESTART",
             format!("{:.4} s, {}", restart.at_s, restart.cause),
         );
@@ -59,7 +92,7 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
     let built_for = outcome.telemetry.boots.last().and_then(|boot| boot.device);
     let here = setup.device.stages.fingerprint();
     if let Some(other) = built_for.filter(|device| *device != here) {
-        line(
+        lines.add(
             "DEVICE",
             format!(
                 "the image is built for device {other}, this run has device {here}: build the image \
@@ -67,28 +100,35 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
             ),
         );
     }
+}
+
+/// Length and distance of the control ticks.
+fn add_ticks(lines: &mut Lines, outcome: &Outcome) {
     let range = |range: Option<Range>, unit: &str| {
         range.map_or("none".to_owned(), |r| {
             format!("{} to {}, mean {:.1} {unit}", r.min, r.max, r.mean)
         })
     };
     if let Some(cost) = outcome.instructions() {
-        line("control tick", range(Some(cost), "instructions"));
-        line(
+        lines.add("control tick", range(Some(cost), "instructions"));
+        lines.add(
             "share of the period",
             budget::share(cost, outcome.rate_hz()),
         );
     } else {
-        let text = "none with both amplifiers enabled";
-        line("control tick", text.to_owned());
+        lines.add("control tick", "none with both amplifiers enabled");
     }
-    line("control period", range(outcome.periods(), "ns"));
-    let malformed = outcome.telemetry.malformed.len();
-    let frames = &outcome.telemetry.frames;
-    line("frames", format!("{}, {malformed} malformed", frames.len()));
+    lines.add("control period", range(outcome.periods(), "ns"));
+}
+
+/// Number of the telemetry frames, and the state that the last one tells.
+fn add_frames(lines: &mut Lines, telemetry: &Telemetry) {
+    let malformed = telemetry.malformed.len();
+    let frames = &telemetry.frames;
+    lines.add("frames", format!("{}, {malformed} malformed", frames.len()));
     if let Some(last) = frames.last() {
-        line("mode", numbered(last.state.as_str(), last.state as u8));
-        line(
+        lines.add("mode", numbered(last.state.as_str(), last.state as u8));
+        lines.add(
             "cause of the stop",
             numbered(last.cause.as_str(), last.cause as u8),
         );
@@ -101,17 +141,14 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
                     )
                 }
             };
-            line("estimator", name);
+            lines.add("estimator", name);
         }
-        line("missed control ticks", last.overruns.to_string());
-        line("lost frames", last.drops.to_string());
+        lines.add("missed control ticks", last.overruns);
+        lines.add("lost frames", last.drops);
     }
-    if let Some(learned) = frames
-        .iter()
-        .rev()
-        .find_map(|frame| frame.side_lines.learned)
-    {
-        line(
+    let mut latest = frames.iter().rev();
+    if let Some(learned) = latest.find_map(|frame| frame.side_lines.learned) {
+        lines.add(
             "learned",
             format!(
                 "deviation of damping {:+.3}, of friction {:+.3}, of the torque constant {:+.3}",
@@ -119,29 +156,6 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
             ),
         );
     }
-    for (at_ns, [large, small]) in outcome.enables.iter().skip(1) {
-        let name = |on: &bool| if *on { "on" } else { "off" };
-        let at = *at_ns as f64 * 1e-9;
-        line(
-            "amplifiers",
-            format!("{at:.5} s: large {}, small {}", name(large), name(small)),
-        );
-    }
-    let diameter = setup.device.handle.diameter_m;
-    match outcome.parasitic(SETTLED_S, diameter) {
-        Some(force) => line(
-            "parasitic force",
-            format!("{:.2} mN rms, {:.2} mN at most", force.rms_mn, force.max_mn),
-        ),
-        None => line(
-            "parasitic force",
-            format!(
-                "unknown, because {}",
-                no_force(setup.seconds, !outcome.restarts.is_empty())
-            ),
-        ),
-    }
-    out
 }
 
 #[cfg(test)]
