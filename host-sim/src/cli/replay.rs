@@ -160,16 +160,6 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     for line in passes.summary.lines(&device) {
         note(format_args!("{name}: {line}"));
     }
-    let counts_of = match options.recording.encoder.counts_per_rev {
-        Some(_) => "of --counts-per-rev; ",
-        None if counted.is_stated => "of the file; ",
-        None => "",
-    };
-    let device_name = match options.device.is_given() {
-        true => options.device.name(),
-        false => "the default device: no --device given".to_owned(),
-    };
-    let device_name = format!("{counts_of}{device_name}");
     for line in interruptions.into_iter().chain(passes.truth.line()) {
         note(wrapped(&format!("{name}: {line}"), 2));
     }
@@ -192,7 +182,12 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         }
     };
     let size = (survey.rows, survey.columns.rate_hz);
-    let header = replay::header(size, &device, &device_name, &parameters);
+    let header = replay::header(
+        size,
+        &device,
+        &device_name(options, counted.is_stated),
+        &parameters,
+    );
     let header = format!("{header}{against}");
     let header = wrapped(&format!("{name}: {header}"), 2);
     if json_to_stdout || out.is_some_and(is_stdout) {
@@ -205,6 +200,21 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         None => replay::table(&rows, with_coupler, terminal_width()),
     };
     print_bytes(format!("{header}\n{table}").as_bytes())
+}
+
+/// Where the device comes from, and where its counts per revolution do if they are not its own: `is_stated` if the
+/// file states them.
+fn device_name(options: &Replay, is_stated: bool) -> String {
+    let counts_of = match options.recording.encoder.counts_per_rev {
+        Some(_) => "of --counts-per-rev; ",
+        None if is_stated => "of the file; ",
+        None => "",
+    };
+    let device_name = match options.device.is_given() {
+        true => options.device.name(),
+        false => "the default device: no --device given".to_owned(),
+    };
+    format!("{counts_of}{device_name}")
 }
 
 /// Refuses a recording, called `name`, without a column that an estimator needs.
