@@ -11,6 +11,7 @@ use haptic_control::SceneKind;
 use terminal::explain;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes};
+use terminal::parse::parsed;
 
 use self::arguments::{Action, Arguments, Hold};
 use crate::board::{Answer, Board};
@@ -45,7 +46,7 @@ impl Hold {
 /// A [`Failure`] with its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments: Vec<_> = arguments.into_iter().collect();
-    match Arguments::try_parse_from(&arguments) {
+    match parsed::<Arguments>(arguments.clone()) {
         Ok(arguments) => act(arguments),
         Err(error) => explain(&error, &asked(&arguments)),
     }

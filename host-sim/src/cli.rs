@@ -35,6 +35,7 @@ use arguments::{Arguments, Command};
 use line::{command_line, run_line};
 use terminal::explain;
 use terminal::failure::Failure;
+use terminal::parse::matches;
 
 /// Runs the command line `arguments`, whose first element is the program's name. Without a command,
 /// `compare` runs with its defaults.
@@ -45,7 +46,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let (command_line, run_line) = (command_line(&arguments), run_line(&arguments));
     let mut root = arguments::command_line();
-    let matches = root.try_get_matches_from_mut(&arguments);
+    let matches = matches(&mut root, arguments.clone());
     let parsed = matches.and_then(|matches| {
         let parsed = Arguments::from_arg_matches(&matches);
         Ok((parsed.map_err(|error| error.format(&mut root))?, matches))

@@ -10,6 +10,7 @@ use measured::Table;
 use measured::tables::{CONTROL, EVIDENCE_COST, PARETO};
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
+use terminal::parse::parsed;
 use terminal::wording::WIDTH;
 
 use crate::{control, measure, peer_tuning, plot, table};
@@ -46,7 +47,7 @@ enum Command {
 /// # Errors
 /// A [`Failure`] with its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match parsed::<Arguments>(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return terminal::explain(&error, "cargo pareto"),
     };

@@ -15,6 +15,7 @@ use recordings::arguments::{DeviceFile, RecordingOptions};
 use terminal::explain;
 use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
+use terminal::parse::parsed;
 use terminal::wording::WIDTH;
 
 use crate::hub::{Event, Hub};
@@ -42,12 +43,7 @@ cannot be used, or the board does not answer or is lost.\n\nExamples:
 )]
 struct Arguments {
     /// TCP port of the page at 127.0.0.1, 0 for a free one
-    #[arg(
-        long,
-        value_name = "PORT",
-        default_value_t = 0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
     /// Do not open a browser
     #[arg(long)]
@@ -66,7 +62,7 @@ struct Arguments {
     #[arg(long, value_name = "PORT")]
     board: Option<String>,
     /// Longest wait for an answer of the board, and longest silence of it, 0.1 to 60 s [default: 2]
-    #[arg(long, value_name = "S", requires = "board", allow_negative_numbers = true, value_parser = patience)]
+    #[arg(long, value_name = "S", requires = "board", value_parser = patience)]
     timeout: Option<f64>,
     /// Write all rows from the start to the end of the server to FILE, which is complete after Ctrl-C
     #[arg(long, value_name = "FILE.mcap", value_parser = mcap_file, conflicts_with = "recording")]
@@ -78,7 +74,7 @@ struct Arguments {
 /// # Errors
 /// [`Failure::Input`] if the input cannot be used or a board is lost, [`Failure::Check`] if the server fails.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match parsed::<Arguments>(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return explain(&error, "cargo scope"),
     };

@@ -19,6 +19,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{note, print_bytes, write_whole};
+use terminal::parse::parsed;
 use terminal::wording::WIDTH;
 
 use self::checks::{has_stdout, in_bounds, in_place, in_time, taken};
@@ -68,18 +69,13 @@ struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = holder)]
     hand: Option<HandChoice>,
     /// Virtual duration, above 0, at most 3600 s [default: 3; 3600 with --link]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     seconds: Option<f64>,
     /// Seed of the hand's motion and of the encoders' phases
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Offset of both DAC outputs, -100 to 100 codes
-    #[arg(long, value_name = "CODES", default_value_t = 0, allow_negative_numbers = true,
+    #[arg(long, value_name = "CODES", default_value_t = 0,
         value_parser = clap::value_parser!(i16).range(-100..=100))]
     dac_offset: i16,
     /// Erased flash, as before the bring-up: current limits at 10 %, no scene in closed loop [default: the
@@ -109,7 +105,7 @@ struct Arguments {
     trace: Option<PathBuf>,
     /// Serve the board's serial port over TCP at this port of 127.0.0.1, 0 for a free one, in real
     /// time; print the address. The client commands the board. One client at a time
-    #[arg(long, value_name = "PORT", allow_negative_numbers = true, conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "trace", "budget"])]
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "trace", "budget"])]
     link: Option<u16>,
     /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
     /// instructions, estimated cycles, the control rate at which the ticks use half of the
@@ -210,7 +206,7 @@ fn timed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<(f6
 /// # Errors
 /// A [`Failure`] with its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match parsed::<Arguments>(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return terminal::explain(&error, "cargo board"),
     };

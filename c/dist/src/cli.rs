@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Parser, Subcommand};
 use terminal::failure::Failure;
 use terminal::output::{check_place, is_stdout, print_bytes, write_whole};
+use terminal::parse::parsed;
 use terminal::wording::WIDTH;
 
 /// Write the header and the libraries for C, C++ and Arduino.
@@ -53,7 +54,7 @@ enum What {
 /// # Errors
 /// A [`Failure`] with its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match parsed::<Arguments>(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return terminal::explain(&error, "cargo c-library"),
     };

@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     #[arg(long, global = true, value_name = "PORT")]
     pub(super) port: Option<String>,
     /// Longest wait for an answer of the board, and longest silence of it, 0.1 to 60 s
-    #[arg(long, global = true, value_name = "S", default_value = USUAL, allow_negative_numbers = true, value_parser = patience)]
+    #[arg(long, global = true, value_name = "S", default_value = USUAL, value_parser = patience)]
     pub(super) timeout: f64,
     #[command(subcommand)]
     pub(super) action: Action,
@@ -148,17 +148,17 @@ pub(super) enum Action {
         #[arg(long, value_name = "FILE.csv")]
         out: PathBuf,
         /// Record for S seconds of the board's time [default: until Ctrl-C]
-        #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+        #[arg(long, value_name = "S", value_parser = seconds)]
         seconds: Option<f64>,
     },
     /// Print the telemetry as lines with units; arms nothing
     #[command(after_help = "Example:\n  cargo drive watch --every 0.5")]
     Watch {
         /// Print a line every S seconds of the board's time
-        #[arg(long, value_name = "S", default_value = "0.1", allow_negative_numbers = true, value_parser = seconds)]
+        #[arg(long, value_name = "S", default_value = "0.1", value_parser = seconds)]
         every: f64,
         /// Watch for S seconds of the board's time [default: until Ctrl-C]
-        #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+        #[arg(long, value_name = "S", value_parser = seconds)]
         seconds: Option<f64>,
     },
 }
@@ -177,10 +177,10 @@ pub(super) struct NoBoard {
 pub(super) struct Hold {
     /// End after S seconds of the board's time; those of a scene count from its begin [default: at
     /// Ctrl-C]
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds)]
     pub(super) seconds: Option<f64>,
     /// Print a line of telemetry every S seconds of the board's time
-    #[arg(long, value_name = "S", default_value = "0.5", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value = "0.5", value_parser = seconds)]
     pub(super) every: f64,
     /// Write a recording to FILE at the end; - is standard output, and the lines go to standard error
     #[arg(long, value_name = "FILE.csv")]

@@ -46,7 +46,7 @@ pub struct ColumnOptions {
     #[arg(long, value_name = "M")]
     pub modulus: Vec<String>,
     /// Rate of the rows, for a recording without a column of time
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ")]
     pub row_rate: Option<f64>,
 }
 
@@ -57,7 +57,7 @@ pub struct RecordingOptions {
     #[command(flatten)]
     pub columns: ColumnOptions,
     /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ")]
     pub resample: Option<f64>,
     /// The encoder.
     #[command(flatten)]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Arg, Args, CommandFactory as _, Parser, Subcommand};
+use clap::{Args, CommandFactory as _, Parser, Subcommand};
 
 use super::compare::longer_than_skipped;
 use catalogue::estimators::Kind;
@@ -15,6 +15,7 @@ use recordings::log::{Log, is_stdin};
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::note;
+use terminal::parse::options_with_negative_numbers;
 use terminal::wording::WIDTH;
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
@@ -134,17 +135,9 @@ pub(super) enum Command {
     Device(DeviceFile),
 }
 
-/// The command line. Each option takes a negative number for its value, so that the message about it names the
-/// option.
+/// The command line.
 pub(super) fn command_line() -> clap::Command {
-    let negative = |argument: Arg| {
-        let is_option = argument.get_action().takes_values() && !argument.is_positional();
-        match is_option {
-            true => argument.allow_negative_numbers(true),
-            false => argument,
-        }
-    };
-    Arguments::command().mut_subcommands(|command| command.mut_args(negative))
+    options_with_negative_numbers(Arguments::command())
 }
 
 #[derive(Clone, Debug, Default, Args)]
@@ -292,6 +285,8 @@ pub(super) fn distinct<T: Copy + PartialEq>(given: &[T], default: &[T]) -> Vec<T
 
 #[cfg(test)]
 mod tests {
+    use clap::Arg;
+
     use super::*;
 
     /// The lines of the examples in a help text.

@@ -32,7 +32,7 @@ pub(super) struct Decode {
     #[arg(long = "column", value_name = "t=THEIRS[:UNIT]")]
     columns: Vec<String>,
     /// Rate of the rows, for a capture with a row per sample and without a column of time
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ")]
     row_rate: Option<f64>,
     /// Rate of the recording, 10 to 100000 Hz
     #[arg(long, value_name = "HZ", default_value_t = 1000.0)]

@@ -7,6 +7,7 @@ pub mod checksum;
 mod explain;
 pub mod failure;
 pub mod output;
+pub mod parse;
 pub mod wording;
 
 pub use explain::explain;

@@ -21,6 +21,7 @@ fn misspelled_names_are_answered_with_a_suggestion() {
             "did you mean bandwidth_hz?",
         ),
         ("comapre", "'compare'"),
+        ("help comapre", "'compare'"),
         ("replay r.csv --estimater pll", "'--estimator'"),
     ] {
         let error = folder.refused(arguments);
@@ -93,4 +94,11 @@ fn extreme_numbers_are_printed_with_few_digits() {
             "{arguments}: {error}"
         );
     }
+}
+
+#[test]
+fn help_has_the_help_of_itself() {
+    let folder = Folder::new(HOST_SIM);
+    assert_eq!(folder.good("help --help"), folder.good("--help"));
+    assert_eq!(folder.good("help plot --help"), folder.good("plot --help"));
 }

@@ -12,6 +12,7 @@ use simulation::simulate::RATES_HZ as RANGE_HZ;
 use terminal::explain;
 use terminal::failure::{Failure, ended};
 use terminal::output::{Folder, check_place, is_stdout, print_bytes, write_whole};
+use terminal::parse::parsed;
 use terminal::wording::WIDTH;
 
 use stress::experiment::{Row, Settings};
@@ -109,7 +110,7 @@ fn rate_help() -> String {
 }
 
 fn main() -> ExitCode {
-    ended(match Arguments::try_parse() {
+    ended(match parsed::<Arguments>(std::env::args_os()) {
         Ok(arguments) => run(&arguments),
         Err(error) => explain(&error, "cargo stress"),
     })
@@ -216,4 +217,27 @@ fn finish(arguments: &Arguments, settings: &Settings, rows: Vec<Row>) -> Result<
         return Err(Failure::Check(format!("{failed} rows did not hold")));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Arguments, explain, parsed};
+
+    #[test]
+    fn negative_number_is_told_with_its_option() {
+        for (option, must) in [
+            ("--ticks", "must be a whole number from 1 to 1e15"),
+            ("--rate", "must be 100 to 100000 Hz"),
+            ("--seed", "must be a whole number from 0 on"),
+        ] {
+            let line = ["stress", option, "-5"].map(Into::into);
+            let error = parsed::<Arguments>(line).unwrap_err();
+            let said = explain(&error, "cargo stress").unwrap_err().to_string();
+            assert!(
+                said.starts_with(&format!("invalid value '-5' for '{option} <")),
+                "{said}"
+            );
+            assert!(said.contains(must), "{said}");
+        }
+    }
 }
