@@ -26,7 +26,7 @@ use recordings::log::Log;
 #[derive(Debug, Args)]
 pub(super) struct Export {
     /// Recording: CSV as for host-sim replay; - is standard input
-    #[arg(value_name = "RECORDING.csv", required_unless_present = "c")]
+    #[arg(value_name = "RECORDING.csv", required_unless_present_any = FOR_C)]
     recording: Option<PathBuf>,
     /// Estimator whose velocity the file has, see host-sim estimators; repeatable [default: all whose
     /// needed columns are present]. For C: the estimator whose parameters are written
@@ -39,7 +39,7 @@ pub(super) struct Export {
     #[command(flatten)]
     parameters: ParameterOptions,
     /// Write the file to FILE; - is standard output
-    #[arg(long, value_name = "FILE.mcap", required_unless_present = "c")]
+    #[arg(long, value_name = "FILE.mcap", required_unless_present_any = FOR_C)]
     mcap: Option<PathBuf>,
     /// Write the parameters of --estimator as a C constant for limpid.h, no recording is read
     #[arg(long, requires = "estimators", conflicts_with_all =
@@ -49,34 +49,71 @@ pub(super) struct Export {
     design: Design,
 }
 
+/// Options that are given for C alone. Those without `--c` have an error of their own, [`Design::of_c`]: the parser
+/// would ask for the arguments of both kinds of file.
+const FOR_C: [&str; 5] = ["c", "rate", "edge_clock", "constant", "out"];
+
+/// Default of `--rate`, Hz.
+const RATE_HZ: f64 = 1e3;
+
 /// What the parameters of --c are for.
 #[derive(Debug, Args)]
 struct Design {
-    #[arg(long, value_name = "HZ", default_value_t = 1e3, requires = "c", help = rate_help())]
-    rate: f64,
-    /// For C: clock that stamps edges, Hz
-    #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c")]
-    edge_clock: f64,
+    #[arg(long, value_name = "HZ", help = rate_help())]
+    rate: Option<f64>,
+    #[arg(long, value_name = "HZ", help = edge_clock_help())]
+    edge_clock: Option<f64>,
     /// For C: name of the constant; the counts per revolution and the rate are NAME_COUNTS_PER_REV and
     /// NAME_RATE_HZ in capitals [default: limpid_ESTIMATOR_parameters, LIMPID_ESTIMATOR_RATE_HZ]
-    #[arg(long, value_name = "NAME", requires = "c", value_parser = identifier)]
+    #[arg(long, value_name = "NAME", value_parser = identifier)]
     constant: Option<String>,
-    /// For C: write the header to FILE; - is standard output
-    #[arg(long, value_name = "FILE.h", default_value = "-", requires = "c")]
-    out: PathBuf,
+    /// For C: write the header to FILE; - is standard output [default: -]
+    #[arg(long, value_name = "FILE.h")]
+    out: Option<PathBuf>,
+}
+
+impl Design {
+    /// Refuses the options without `--c`.
+    fn of_c(&self) -> Result<(), Failure> {
+        let given = [
+            ("--rate", self.rate.is_some()),
+            ("--edge-clock", self.edge_clock.is_some()),
+            ("--constant", self.constant.is_some()),
+            ("--out", self.out.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((option, _)) => Err(Failure::Input(format!(
+                "{option} is for the parameters in C; add --c, or leave it out: MCAP is written with --mcap FILE.mcap \
+                 at the rate of the recording"
+            ))),
+        }
+    }
 }
 
 /// Help text of `--rate`.
 fn rate_help() -> String {
     let [lowest, highest] = EVERY_HZ;
-    format!("For C: control rate, {lowest} to {highest} Hz")
+    format!("For C: control rate, {lowest} to {highest} Hz [default: {RATE_HZ}]")
+}
+
+/// Help text of `--edge-clock`.
+fn edge_clock_help() -> String {
+    format!("For C: clock that stamps edges, Hz [default: {EDGE_CLOCK_HZ}]")
 }
 
 pub(super) fn run(options: &Export) -> Result<(), Failure> {
-    let (Some(recording), Some(file)) = (&options.recording, &options.mcap) else {
+    if options.c {
         return header(options);
-    };
-    write_mcap(options, recording, file)
+    }
+    options.design.of_c()?;
+    match (&options.recording, &options.mcap) {
+        (Some(recording), Some(file)) => write_mcap(options, recording, file),
+        // The parser asks for both.
+        _ => Err(Failure::Input(
+            "a recording and --mcap are needed".to_owned(),
+        )),
+    }
 }
 
 /// The parameters of one estimator in C.
@@ -91,9 +128,10 @@ fn header(options: &Export) -> Result<(), Failure> {
         constant,
         out,
     } = &options.design;
-    let rate = in_range("--rate", *rate, EVERY_HZ, "Hz")?;
+    let rate = in_range("--rate", rate.unwrap_or(RATE_HZ), EVERY_HZ, "Hz")?;
+    let edge_clock = edge_clock.unwrap_or(EDGE_CLOCK_HZ);
     // Also for an estimator that reads no stamps.
-    if !(*edge_clock > 0.0 && edge_clock.is_finite()) {
+    if !(edge_clock > 0.0 && edge_clock.is_finite()) {
         return Err(Failure::Input(format!(
             "--edge-clock {edge_clock}: must be a number above 0, in Hz"
         )));
@@ -107,7 +145,8 @@ fn header(options: &Export) -> Result<(), Failure> {
         .parameters
         .load(&[kind])?
         .values(kind, &setup, PlantKind::Friction);
-    let header = kind.c(&setup, Hertz(*edge_clock), &values, constant.as_deref())?;
+    let header = kind.c(&setup, Hertz(edge_clock), &values, constant.as_deref())?;
+    let out = out.as_deref().unwrap_or(Path::new("-"));
     write_whole(out, header.as_bytes())
 }
 

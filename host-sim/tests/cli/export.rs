@@ -109,3 +109,38 @@ fn constant_for_c_has_the_name_that_is_asked_for() {
         assert!(error.contains(&said), "{error}");
     }
 }
+
+#[test]
+fn option_for_c_without_c_is_refused_with_both_ways_out() {
+    let folder = folder();
+    for option in [
+        "--rate 1000",
+        "--edge-clock 1e6",
+        "--constant wheel",
+        "--out x.h",
+    ] {
+        let (name, _) = option.split_once(' ').unwrap();
+        let said = format!("error: {name} is for the parameters in C; add --c, or leave it out: ");
+        for others in ["", "run.csv ", "--mcap a.mcap ", "run.csv --mcap a.mcap "] {
+            let error = folder.refused(&format!("export {others}{option}"));
+            assert!(error.starts_with(&said), "{others}{option}: {error}");
+        }
+    }
+    for (line, said) in [
+        (
+            "run.csv",
+            "required arguments were not provided: --mcap <FILE.mcap>;",
+        ),
+        (
+            "--c --rate 1000",
+            "required arguments were not provided: --estimator <NAME>;",
+        ),
+        (
+            "--rate --mcap a.mcap",
+            "a value is required for '--rate <HZ>' but none",
+        ),
+    ] {
+        let error = folder.refused(&format!("export {line}"));
+        assert!(error.contains(said), "{line}: {error}");
+    }
+}
