@@ -17,6 +17,7 @@ const SOURCES: [&str; 13] = [
     "../haptic-control",
     "../host-sim/device-files",
     "../host-sim/presets.toml",
+    "../host-sim/spelling",
     "../memory.x",
     "../rust-toolchain.toml",
     "../tuned",

@@ -127,6 +127,42 @@ fn is_meant_as_number(value: &str, error: &toml::de::Error) -> bool {
         && (reasons.iter().chain(&parts)).any(|reason| error.message().starts_with(reason))
 }
 
+/// Lines that a presets file without them lacks, by key.
+const EXAMPLES: [(&str, &str); 3] = [
+    ("rate_hz", "rate_hz = 1000, the control rate in Hz"),
+    ("plant", "plant = \"friction\" or plant = \"frictionless\""),
+    (
+        "estimators",
+        "[preset.estimators.NAME] with the values of an estimator, as host-sim tune writes it",
+    ),
+];
+
+/// `what`, an error of the parser about a key, with the nearest known key or with a line for one that is missing.
+fn with_remedy(what: &str) -> String {
+    let quoted = |text: &str| text.split('`').nth(1).unwrap_or("").to_owned();
+    if let Some(rest) = what.strip_prefix("missing field ") {
+        let key = quoted(rest);
+        let example = EXAMPLES.iter().find(|(known, _)| *known == key);
+        return match example {
+            Some((_, example)) => format!("{what}; add {example}"),
+            None => format!("{what}; add a line '{key} = '"),
+        };
+    }
+    let unknown = ["unknown field ", "unknown variant "]
+        .iter()
+        .any(|start| what.starts_with(start));
+    let (said, expected) = match what.split_once(", expected ") {
+        Some((said, expected)) if unknown => (said, expected),
+        _ => return what.to_owned(),
+    };
+    // Names and the text between them take turns.
+    let known = expected.split('`').skip(1).step_by(2);
+    match spelling::nearest(&quoted(said), known) {
+        Some(nearest) => format!("{said}; did you mean `{nearest}`? expected {expected}"),
+        None => what.to_owned(),
+    }
+}
+
 /// The parser's error in one line, with the line's number and its key.
 pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
     let what = error
@@ -142,7 +178,7 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
                 counts_per_rev_rule(None)
             ),
         );
-    let what = shortened_quotes(&what);
+    let what = with_remedy(&shortened_quotes(&what));
     let Some(span) = error.span() else {
         return what;
     };

@@ -64,9 +64,23 @@ fn errors_of_a_device_file_name_line_or_key_and_remedy() {
         (
             "[large]\ninertia = 1e-5\n",
             &[
-                "line 2, inertia: unknown field `inertia`, expected one of",
+                "line 2, inertia: unknown field `inertia`; did you mean `inertia_kg_m2`? expected one of",
                 "`inertia_kg_m2`",
             ][..],
+        ),
+        (
+            "[large]\ninertia_kgm2 = 1e-5\n",
+            &[
+                "line 2, inertia_kgm2: unknown field `inertia_kgm2`; did you mean `inertia_kg_m2`? expected",
+            ],
+        ),
+        (
+            "[larg]\ninertia_kg_m2 = 1e-5\n",
+            &["line 1, [larg]: unknown field `larg`; did you mean `large`? expected one of"],
+        ),
+        (
+            "x = 1\n",
+            &["line 1, x: unknown field `x`, expected one of"],
         ),
         (
             "[large]\n\ninertia_kg_m2 = \"heavy\"\n",
@@ -184,7 +198,27 @@ fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
     for (text, parts) in [
         (
             preset("rate = 1"),
-            &["line 4, rate: unknown field `rate`, expected one of"][..],
+            &["line 4, rate: unknown field `rate`; did you mean `rate_hz`? expected one of"][..],
+        ),
+        (
+            "[[presets]]\nrate_hz = 1e3\n".into(),
+            &["line 1, [[presets]]: unknown field `presets`; did you mean `preset`? expected `preset` or `image`"],
+        ),
+        (
+            preset("estimators = {}").replace("friction", "frict"),
+            &["line 3, plant: unknown variant `frict`; did you mean `friction`? expected `friction` or"],
+        ),
+        (
+            preset("estimators = {}").replace("plant", "#"),
+            &["line 1, [[preset]]: missing field `plant`; add plant = \"friction\" or plant = \"frictionless\""],
+        ),
+        (
+            preset(""),
+            &["line 1, [[preset]]: missing field `estimators`; add [preset.estimators.NAME] with the values"],
+        ),
+        (
+            preset("estimators = {}").replace("rate_hz", "#"),
+            &["line 1, [[preset]]: missing field `rate_hz`; add rate_hz = 1000, the control rate in Hz"],
         ),
         (
             preset("counts_per_rev = -1"),

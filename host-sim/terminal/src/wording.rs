@@ -7,10 +7,6 @@ use std::ffi::OsStr;
 /// Width of a terminal if the width is unknown, columns.
 pub const WIDTH: usize = 80;
 
-/// Least Jaro-Winkler similarity (0 to 1) of the name that the message about an unknown name
-/// suggests.
-const SIMILAR: f64 = 0.75;
-
 /// `text` in lines of at most [`WIDTH`] columns; all but the first begin with `indent` spaces.
 /// A word that is longer than a line is not broken.
 #[must_use]
@@ -72,17 +68,11 @@ pub fn quoted(argument: &OsStr) -> String {
 #[must_use]
 pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<_> = known.into_iter().collect();
-    let lower = name.to_lowercase();
-    let nearest = known
-        .iter()
-        .map(|other| (strsim::jaro_winkler(&lower, &other.to_lowercase()), *other));
-    let nearest = nearest.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    let nearest = spelling::nearest(name, known.iter().copied());
     let all = known.join(", ");
     let name = name.escape_debug();
-    match nearest.filter(|(similarity, _)| *similarity >= SIMILAR) {
-        Some((_, nearest)) => {
-            format!("no {what} '{name}'; did you mean {nearest}? there are {all}")
-        }
+    match nearest {
+        Some(nearest) => format!("no {what} '{name}'; did you mean {nearest}? there are {all}"),
         None => format!("no {what} '{name}'; there are {all}"),
     }
 }
