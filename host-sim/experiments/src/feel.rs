@@ -21,6 +21,8 @@ use crate::transparency::{Attribution, Fingertip, Ledger, Parasitic};
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use device_files::six_digits;
+use scoring::score::SKIP_S;
+use scoring::spectrum::SEGMENT_S;
 use simulation::device::Device;
 use simulation::simulate;
 use terminal::failure::Failure;
@@ -98,6 +100,22 @@ pub struct Felt {
     pub attribution: Option<Attribution>,
     /// Scores of the parasitic force without a cause, in the order of [`Settings::without`].
     pub without: Vec<(Without, Parasitic)>,
+}
+
+/// Why the scores from 50 to 500 Hz are missing; `None` where there are some, or no scores at all.
+#[must_use]
+pub fn without_spectrum(all: &[Felt]) -> Option<String> {
+    let is_short = |felt: &Felt| {
+        let found = felt.attribution.as_ref();
+        found.is_some_and(|found| found.tactile_mn.is_none())
+    };
+    all.iter().any(is_short).then(|| {
+        format!(
+            "the columns from 50 to 500 Hz need --seconds {} or more: a spectrum takes {SEGMENT_S} s after the first \
+             {SKIP_S} s",
+            SKIP_S + SEGMENT_S
+        )
+    })
 }
 
 /// A case, and what is switched off in it.

@@ -7,7 +7,7 @@ use clap::Args;
 use catalogue::estimators::Kind;
 use experiments::closed_loop::loop_ticks;
 use experiments::feel::rows::{self, FeelRow};
-use experiments::feel::{Case, Settings, Without, feel, table::table};
+use experiments::feel::{Case, Settings, Without, feel, table::table, without_spectrum};
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use haptic_control::SceneKind;
@@ -105,6 +105,10 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     let bar = progress(experiments::feel::runs(&cases, &settings), "closing loops");
     let felt = feel(&cases, &settings, &|| bar.inc(1))?;
     bar.finish_and_clear();
+    let short = without_spectrum(&felt);
+    if let Some(line) = &short {
+        note(format_args!("note: {line}"));
+    }
 
     let (causes, without) = (
         rows::causes(&felt, &settings),
@@ -116,7 +120,10 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     let json = json(&both)?;
     let mut text = table(&felt, &settings, terminal_width());
     if let Some(folder) = folder {
-        let below = left_out.map_or_else(String::new, |line| format!("\n{}\n", wrapped(&line, 0)));
+        let lines = left_out.iter().chain(&short);
+        let below: String = lines
+            .map(|line| format!("\n{}\n", wrapped(line, 0)))
+            .collect();
         let printout = Printout {
             command: command_line,
             device: &options.device.name(),

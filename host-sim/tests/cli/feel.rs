@@ -6,7 +6,7 @@ use crate::{Folder, HOST_SIM, json};
 fn cause_without_which_no_device_is_left_is_left_out_with_a_note() {
     let folder = Folder::new(HOST_SIM);
     folder.write("d.toml", "[hand]\ndamping_nms_per_rad = 0.005\n");
-    let run = "feel --scene wall --estimator pll --seconds 0.3 --device d.toml";
+    let run = "feel --scene wall --estimator pll --seconds 0.4 --device d.toml";
     let (rows, notes) = folder.ends(0, &format!("{run} --json -"));
     assert_eq!(notes.lines().count(), 1, "{notes}");
     let said = "cannot be simulated without \"9/10 of the handle's inertia\", ";
@@ -62,4 +62,17 @@ fn device_without_a_hand_is_refused() {
         let said = "hand.stiffness_nm_per_rad and hand.damping_nms_per_rad are both 0";
         assert!(error.contains(said), "{error}");
     }
+}
+
+/// The first 0.1 s are not scored, and a spectrum takes 0.25 s.
+#[test]
+fn run_that_is_too_short_for_a_spectrum_says_how_long_is_needed() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "feel --causes-only --scene wall --estimator pll --rate 1000";
+    let said = "the columns from 50 to 500 Hz need --seconds 0.35 or more";
+    let (table, notes) = folder.ends(0, &format!("{run} --seconds 0.34 --out page"));
+    assert!(table.contains(" -") && notes.contains(said), "{notes}");
+    assert!(folder.text("page/index.html").contains(said));
+    let (_, notes) = folder.ends(0, &format!("{run} --seconds 0.35 --json -"));
+    assert_eq!(notes, "");
 }
