@@ -24,7 +24,7 @@ use super::text::separator::{Separator, comment, stamp};
 use endings::Ending;
 use formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 pub(super) use places::{Part, Place, Places};
-pub(super) use search::{UNKNOWN, is_fraction, is_number};
+pub(super) use search::{UNKNOWN, is_fraction, is_number, unit_since_1970};
 use search::{
     fractional, is_content, moments, named, numbers, probable, since_1970, two_levels,
     without_value,

@@ -91,6 +91,8 @@ impl<'a> Records<'a> {
         } else if let Some(begin) = json::Begin::of(&text, name)? {
             let layout = Layout {
                 fractional: begin.fractional.clone(),
+                moments: begin.moments.clone(),
+                since_1970: begin.since_1970.clone(),
                 ..named(&begin.names, begin.line)
             };
             (layout, Source::Json(Json::new(input, end, &begin)))

@@ -93,6 +93,20 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         ],
     ),
     (
+        "candump.log",
+        "",
+        &[
+            "line 1: the rows are frames of a CAN bus, as '181#CC0C0000'; decode them, for example with cantools",
+        ],
+    ),
+    (
+        "hexadecimal.csv",
+        "",
+        &[
+            "line 2: column counts_large: '1CCC' is not a number; if it is hexadecimal, write it in decimal; else",
+        ],
+    ),
+    (
         "fortran.csv",
         "",
         &[

@@ -134,6 +134,7 @@ pub(crate) fn reason(layout: &Layout, places: &Places) -> Option<String> {
     let ambiguous = ambiguous(layout, places);
     keyed(layout)
         .or_else(|| labelled(layout))
+        .or_else(|| frames(layout))
         .or(ambiguous)
         .or_else(|| captured(layout))
         .or_else(|| levels(layout))
@@ -168,6 +169,22 @@ fn labelled(layout: &Layout) -> Option<String> {
         "the row has '{}', a name and a number in one field, and other fields without a name; write the numbers \
          alone, separated by commas, and the names in a line above them, for example t,counts_large",
         short(field)
+    ))
+}
+
+/// Frames of a CAN bus as candump of can-utils prints them: `181#50FAFFFF`.
+fn frames(layout: &Layout) -> Option<String> {
+    let is_frame = |field: &&String| {
+        let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let frame = field.split_once('#');
+        frame.is_some_and(|(id, data)| [3, 8].contains(&id.len()) && digits(id) && digits(data))
+    };
+    let first = layout.separator.split(&layout.first_row);
+    let frame = layout.names.iter().chain(&first).find(is_frame)?;
+    Some(format!(
+        "the rows are frames of a CAN bus, as '{}'; decode them, for example with cantools and the DBC file of the bus, \
+         and write t,counts_large in the first line",
+        short(frame)
     ))
 }
 

@@ -246,16 +246,18 @@ const SINCE_1970: std::ops::Range<f64> = 1e9..4.1e9;
 
 /// Places of the columns of `layout` that are a time since 1970 in the first of the rows among `lines`, and its unit.
 pub(super) fn since_1970(layout: &Layout, lines: &[&str]) -> Vec<(usize, &'static str)> {
-    let unit = |field: &String| {
-        let number = number(field, layout.separator)?;
-        let fits = |unit: &&Unit| SINCE_1970.contains(&(number / unit.per_s()));
-        Quantity::Time.units().iter().find(fits).map(Unit::name)
-    };
+    let unit = |field: &String| unit_since_1970(number(field, layout.separator)?);
     let first = first_row(layout, lines);
     let fields = first.iter().enumerate();
     fields
         .filter_map(|(place, field)| Some((place, unit(field)?)))
         .collect()
+}
+
+/// The unit in which `number` is a time since 1970.
+pub(crate) fn unit_since_1970(number: f64) -> Option<&'static str> {
+    let fits = |unit: &&Unit| SINCE_1970.contains(&(number / unit.per_s()));
+    Quantity::Time.units().iter().find(fits).map(Unit::name)
 }
 
 /// Places of the columns of `layout` that are a date or a time of day in the first of the rows among `lines`.

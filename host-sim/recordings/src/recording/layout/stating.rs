@@ -5,6 +5,7 @@ use super::hint;
 use super::words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 use super::{Layout, Place, labview};
 use crate::recording::options::Column;
+use crate::recording::options::units::Unit;
 
 /// The end of a name that counts anything: samples, errors, or an encoder's lines.
 const COUNT: &str = "count";
@@ -51,10 +52,24 @@ impl Layout {
         let lower = name.trim().to_lowercase();
         let is_sure = has(name, words) || !lower.ends_with(COUNT);
         let is_sure = is_sure && (column == Column::T || !is_indirect(name));
-        match self.ending(quantity, place) {
-            Ending::Unit(unit) if is_only && is_sure => Some(self.at(column, place, unit)),
+        let unit = match self.ending(quantity, place) {
+            Ending::Unit(unit) => Some(unit),
+            Ending::Nothing if column == Column::T => self.unit_by_value(place),
             _ => None,
+        };
+        let unit = unit.filter(|_| is_only && is_sure)?;
+        Some(self.at(column, place, unit))
+    }
+
+    /// The unit of a time that its value in the first row tells: a date has none, and a time since 1970 is one in a
+    /// single unit.
+    fn unit_by_value(&self, place: usize) -> Option<&'static Unit> {
+        let time = Column::T.quantity();
+        if self.moments.contains(&place) {
+            return time.units().first();
         }
+        let mut known = self.since_1970.iter().filter(|(known, _)| *known == place);
+        known.next().and_then(|(_, unit)| time.unit(unit))
     }
 }
 
@@ -127,6 +142,41 @@ mod tests {
         let small = "counts_small=handle_counts";
         let recording = read(&rows("time_ms,motor_counts,handle_counts"), small).unwrap();
         assert!(recording.notes[0].contains("counts_large from 'motor_counts'"));
+    }
+
+    #[test]
+    fn value_of_a_time_tells_its_unit() {
+        for (name, first, second, said) in [
+            ("ts", "1700000000123456789", "1700000000124456789", "ns"),
+            ("timestamp", "1700000000123", "1700000000124", "ms"),
+            ("time", "1700000000.123", "1700000000.124", "s"),
+            (
+                "ts",
+                "2026-03-01T12:00:00.123Z",
+                "2026-03-01T12:00:00.124Z",
+                "s",
+            ),
+            ("Time", "12:00:00.123", "12:00:00.124", "s"),
+        ] {
+            let csv = format!("{name},counts\n{first},0\n{second},1\n");
+            let quote = if first.contains(':') { "\"" } else { "" };
+            let object = |t: &str, k| format!("{{\"{name}\":{quote}{t}{quote},\"counts\":{k}}}\n");
+            for log in [csv, object(first, 0) + &object(second, 1)] {
+                let recording = read(&log, "").unwrap();
+                let step = recording.t[1] - recording.t[0];
+                // Seconds since 1970 are a float with a resolution of 0.24 us.
+                assert!((step - 1e-3).abs() < 1e-6, "{log}: {step}");
+                let said = format!("t from '{name}' ({said})");
+                assert!(recording.notes[0].contains(&said), "{:?}", recording.notes);
+            }
+        }
+        // Two times leave a choice, and another name says nothing.
+        for names in ["ts,stamp", "ts,time", "when,x"] {
+            let log = format!(
+                "{names},counts\n1700000000123,1700000000123,0\n1700000000124,1700000000124,1\n"
+            );
+            assert!(read(&log, "").is_err(), "{names}");
+        }
     }
 
     #[test]

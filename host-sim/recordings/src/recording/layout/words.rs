@@ -2,7 +2,7 @@
 
 /// Parts of the names of positions, and of times.
 pub(crate) const POSITIONS: &[&str] = &["counts", "encoder", "enc", "pos", "angle", "theta"];
-pub(crate) const TIMES: &[&str] = &["time", "stamp"];
+pub(crate) const TIMES: &[&str] = &["time", "stamp", "ts"];
 
 /// Parts of the names of what is derived from a position.
 const DERIVED: &[&str] = &["vel", "speed", "omega", "acc", "dot"];

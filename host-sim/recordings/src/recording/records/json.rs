@@ -5,16 +5,17 @@ mod fields;
 mod lists;
 mod other;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::io::BufRead;
 
 use csv::ByteRecord;
 use terminal::failure::Failure;
 
 use super::named_fields::{Field, Places, names};
-use crate::recording::layout::SEARCHED;
+use crate::recording::layout::{SEARCHED, unit_since_1970};
 use crate::recording::text::lines::LineReader;
 use crate::recording::text::separator::is_comment;
+use crate::recording::times::moment::Moment;
 
 use fields::fields;
 pub(super) use other::Other;
@@ -33,6 +34,10 @@ pub(super) struct Begin {
     pub(super) line: u64,
     /// Places of the names that have a number with a fraction in the first objects.
     pub(super) fractional: Vec<usize>,
+    /// Places of the names that have a date or a time of day in the first object.
+    pub(super) moments: Vec<usize>,
+    /// Places of the names that have a time since 1970 in the first object, and its unit.
+    pub(super) since_1970: Vec<(usize, &'static str)>,
     /// Whether it is a log of moteus, whose lines belong to channels and controllers.
     channels: bool,
 }
@@ -61,13 +66,23 @@ impl Begin {
         let Some(found) = of_channel.or_else(|| objects().next()) else {
             return Err(not_alone(first.as_bytes(), line, name));
         };
+        let first: HashMap<_, _> = (found.iter().rev())
+            .map(|field| (field.name.clone(), field.text.clone()))
+            .collect();
         let names = names(found);
+        let texts = || names.iter().filter_map(|name| first.get(name)).enumerate();
+        let is_moment = |(_, text): &(usize, &String)| Moment::parse(text).is_some();
+        let unit = |text: &String| unit_since_1970(text.parse().ok()?);
         let has_fraction = |field: &Field| field.text.parse().is_ok_and(|x: f64| x.fract() != 0.0);
         let fractions = objects().take(SEARCHED).flatten().filter(has_fraction);
         let fractions: HashSet<_> = fractions.map(|field| field.name).collect();
         Ok(Some(Self {
             fractional: (0..names.len())
                 .filter(|place| fractions.contains(&names[*place]))
+                .collect(),
+            moments: texts().filter(is_moment).map(|(place, _)| place).collect(),
+            since_1970: texts()
+                .filter_map(|(place, text)| Some((place, unit(text)?)))
                 .collect(),
             names,
             line,

@@ -60,12 +60,24 @@ fn remedy(text: &str, [column, theirs]: [&str; 2], is_first: bool) -> String {
         measured if has_unit(measured) => "write it without its unit".to_owned(),
         minus if minus.starts_with('\u{2212}') => "write the minus sign as '-'".to_owned(),
         _ if has_thousands(text) => "write it without separators of thousands".to_owned(),
+        _ if is_hexadecimal(&lower) => {
+            "if it is hexadecimal, write it in decimal; else correct the field, or remove the row"
+                .to_owned()
+        }
         _ if text.contains(',') => "write it with a decimal point".to_owned(),
         _ if is_first && !text.contains(digits) => {
             "remove the line if it has the units, and state them with --column".to_owned()
         }
         _ => "correct the field, or remove the row".to_owned(),
     }
+}
+
+/// Whether a word of digits and letters to f may be a hexadecimal number. A number with an exponent that is cut is none.
+fn is_hexadecimal(lower: &str) -> bool {
+    let has = |of: fn(char) -> bool| lower.contains(of);
+    lower.chars().all(|c| c.is_ascii_hexdigit())
+        && has(|c| c.is_ascii_digit())
+        && has(|c| ('a'..='f').contains(&c) && c != 'e')
 }
 
 /// Whether a field is a date or a time of a form that is not read: it has a number with colons, or one with two hyphens
@@ -135,6 +147,11 @@ mod tests {
         for (field, remedy) in [
             ("nan", "remove the rows without a value"),
             ("0x1F", "it is hexadecimal: write it in decimal"),
+            (
+                "0FA5",
+                "if it is hexadecimal, write it in decimal; else correct the field, or remove the row",
+            ),
+            ("12e", "correct the field, or remove the row"),
             (
                 "12:00:00.5",
                 "it is a time: name another column with --column",

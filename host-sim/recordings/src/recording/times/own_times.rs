@@ -16,6 +16,9 @@ const DAY_S: f64 = DAY_NS as f64 / 1e9;
 /// An hour, s.
 const HOUR_S: f64 = HOUR_NS as f64 / 1e9;
 
+/// The period of `micros()`, s: 2^32 us.
+const MICROS_S: f64 = 4_294_967_296.0 / 1e6;
+
 /// Bits of the counters that are read as times.
 const BITS: [i32; 2] = [32, 16];
 
@@ -60,7 +63,10 @@ impl OwnTimes {
             return match form {
                 Form::Number { unit } => {
                     self.floats.add(t, unit.per_s());
-                    Ok(self.wraps.unwrapped(t, &periods(unit), row.line))
+                    // A counter of microseconds may be written in another unit.
+                    Ok(self
+                        .wraps
+                        .unwrapped(t, &periods(unit), &[MICROS_S], row.line))
                 }
                 Form::Moment { .. } => Err(mixed(row, at)),
             };
@@ -77,8 +83,8 @@ impl OwnTimes {
             } if kind == first => {
                 let t = (ns - origin_ns) as f64 / 1e9;
                 Ok(match kind {
-                    Kind::Clock => self.wraps.unwrapped(t, &[DAY_S], row.line),
-                    Kind::Minutes => self.wraps.unwrapped(t, &[HOUR_S], row.line),
+                    Kind::Clock => self.wraps.unwrapped(t, &[DAY_S], &[], row.line),
+                    Kind::Minutes => self.wraps.unwrapped(t, &[HOUR_S], &[], row.line),
                     Kind::Instant | Kind::Date | Kind::Seconds => t,
                 })
             }
@@ -110,11 +116,15 @@ impl OwnTimes {
             Some(Form::Number { .. }) | None => None,
         };
         let wrap = self.wraps.first.map(|(line, period)| match self.form {
-            Some(Form::Number { unit }) if period != DAY_S => format!(
-                "t wraps at 2^{bits} {} and is unwrapped, the first time in line {line}: a counter of {bits} bits",
-                unit.name(),
-                bits = (period * unit.per_s()).log2().round()
-            ),
+            Some(Form::Number { unit }) if period != DAY_S => {
+                let (bits, unit) = match period == MICROS_S {
+                    true => (32.0, "us"),
+                    false => ((period * unit.per_s()).log2().round(), unit.name()),
+                };
+                format!(
+                    "t wraps at 2^{bits} {unit} and is unwrapped, the first time in line {line}: a counter of {bits} bits"
+                )
+            }
             _ if period == HOUR_S => format!("an hour is full in line {line}, and t goes on"),
             _ => format!("midnight passes in line {line}, and t goes on"),
         });
@@ -182,6 +192,8 @@ fn mixed(row: &Row, at: Place) -> Failure {
 struct Wraps {
     /// The last time in the log, s.
     last: f64,
+    /// The last step between two rows, s.
+    step: f64,
     /// Whole periods since the first row, s.
     passed: f64,
     /// Line after the first wrap, and its period, s.
@@ -190,17 +202,33 @@ struct Wraps {
 
 impl Wraps {
     /// The time `t`, s, with the periods that have passed before `line`. A time that goes back by one of
-    /// `periods` within a hundredth has wrapped: in microseconds, if no more than 43 s are missing there. A signed
-    /// counter wraps to half a period below 0.
-    fn unwrapped(&mut self, t: f64, periods: &[f64], line: u64) -> f64 {
+    /// `periods` within a hundredth has wrapped: in microseconds, if no more than 43 s are missing there. So has one
+    /// after which the step is at most twice the step before, which is a larger part of a short period; this alone
+    /// tells a wrap after one of `by_steps`. A signed counter wraps to half a period below 0.
+    fn unwrapped(&mut self, t: f64, periods: &[f64], by_steps: &[f64], line: u64) -> f64 {
         let (last, back) = (self.last, self.last - t);
-        let is_wrap = |period: &&f64| {
-            let first = if t < 0.0 { -0.5 * **period } else { 0.0 };
-            let is_within = t >= first && last < first + **period;
-            is_within && (back - **period).abs() < NEAR * **period
+        let is_within = |period: f64| {
+            let first = if t < 0.0 { -0.5 * period } else { 0.0 };
+            t >= first && last < first + period
         };
-        if let Some(&period) = periods.iter().find(is_wrap) {
+        let is_near = |period: f64| (back - period).abs() < NEAR * period;
+        let step = self.step;
+        let is_step = |period: f64| {
+            let over = period - back;
+            over > 0.0 && over <= 2.0 * step && 4.0 * step < period
+        };
+        let own = periods
+            .iter()
+            .find(|period| is_within(**period) && (is_near(**period) || is_step(**period)));
+        let by_step = || {
+            by_steps
+                .iter()
+                .find(|period| is_within(**period) && is_step(**period))
+        };
+        self.step = -back;
+        if let Some(&period) = own.or_else(by_step) {
             self.passed += period;
+            self.step += period;
             self.first.get_or_insert((line, period));
         }
         self.last = t;

@@ -94,6 +94,73 @@ fn signed_counter_wraps_to_negative_times() {
     assert!(error.contains("line 4"), "{error}");
 }
 
+/// The step over the wrap, and a counter of microseconds in another unit.
+#[test]
+fn counter_whose_step_is_a_large_part_of_its_period_wraps() {
+    for (name, first, step, period, digits, said) in [
+        (
+            "time_us",
+            60_000_u64,
+            1000,
+            1 << 16,
+            1.0,
+            "t wraps at 2^16 us and is unwrapped, the first time in line 8",
+        ),
+        (
+            "time_us",
+            50_000,
+            10_000,
+            1 << 16,
+            1.0,
+            "t wraps at 2^16 us and is unwrapped, the first time in line 4",
+        ),
+        (
+            "time_ms",
+            4_294_960_000,
+            2000,
+            1 << 32,
+            1e3,
+            "t wraps at 2^32 us and is unwrapped, the first time in line 6",
+        ),
+        (
+            "time_s",
+            4_294_960_000,
+            2000,
+            1 << 32,
+            1e6,
+            "t wraps at 2^32 us and is unwrapped, the first time in line 6",
+        ),
+    ] {
+        let row = |k: u64| format!("{},{k}\n", ((first + k * step) % period) as f64 / digits);
+        let text = format!("{name},counts\n{}", (0..20).map(row).collect::<String>());
+        let recording = read(&text, "").unwrap();
+        for pair in recording.t.windows(2) {
+            assert!(
+                (pair[1] - pair[0] - step as f64 * 1e-6).abs() < 1e-7,
+                "{name}: {pair:?}"
+            );
+        }
+        let has_note = recording.notes.iter().any(|note| note.starts_with(said));
+        assert!(has_note, "{name}: {:?}", recording.notes);
+    }
+    // Whole milliseconds of the counter: 4294967 is before 0.
+    let row = |k: u64| format!("{},{k}\n", (4_294_960_000 + k * 2000) % (1 << 32) / 1000);
+    let text = format!("time_ms,counts\n{}", (0..20).map(row).collect::<String>());
+    let recording = read(&text, "").unwrap();
+    assert!(
+        (recording.t[19] - recording.t[0] - 0.038).abs() < 1e-3,
+        "{:?}",
+        recording.t
+    );
+    // A clock that was set back, and a second run.
+    for back in [
+        "time_us,counts\n60000,0\n61000,1\n900,2\n",
+        "time_ms,counts\n4294960,0\n4294962,1\n8,2\n",
+    ] {
+        assert!(read(back, "").unwrap_err().contains("line 4: column t: "));
+    }
+}
+
 /// A log of 1 kHz around a full second, with the second and a part of it in two columns.
 fn split(header: &str, first: i64, per_s: i64) -> String {
     let rows =
