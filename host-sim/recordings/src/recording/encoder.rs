@@ -119,7 +119,9 @@ impl Encoder {
                     row.failure(column, &format!("{raw} with --modulus {modulus}: {why}"))
                 };
                 if !within {
-                    return Err(refused("raw must be below modulus"));
+                    let remedy = "raw must be below modulus; remove the row if the reading failed, or give the \
+                                  encoder's own modulus";
+                    return Err(refused(remedy));
                 }
                 next.map_err(|error| refused(error.message()))?.0
             }

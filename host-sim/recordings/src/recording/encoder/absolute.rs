@@ -57,6 +57,8 @@ pub(crate) enum Found {
     Wraps(u32),
     /// The counts have an impossible jump, the first number, and span the second number of counts.
     Jumps(i64, i64),
+    /// The counts are this one in a number of rows, and within a revolution in all others.
+    Failed(i64, u64),
     /// The counts wrap at this modulus and cannot be unwrapped.
     Refused(u32, WrapError),
 }
@@ -89,6 +91,12 @@ impl Found {
                     true => modulus_option(column, jump, span),
                     false => String::new(),
                 }
+            ),
+            Self::Failed(count, rows) => format!(
+                "{column} is {count} in {rows} {} and from 0 to {} in all others, as where readings of an absolute \
+                 encoder failed: remove these rows; the counts are not unwrapped",
+                if rows == 1 { "row" } else { "rows" },
+                per_rev - 1
             ),
             Self::Refused(modulus, error) => {
                 format!("{column} wraps at {modulus} and is not unwrapped: {error}")
@@ -139,6 +147,10 @@ pub(crate) struct Extent {
     last: i64,
     /// The largest step between two rows that is no wrap at each of the moduli.
     steps: [i64; 2],
+    /// The first count that is outside of a revolution, and the number of rows with it.
+    outside: Option<(i64, u64)>,
+    /// Whether another count is outside of a revolution too.
+    has_others: bool,
 }
 
 impl Extent {
@@ -148,6 +160,13 @@ impl Extent {
         let step = self.ends.map_or(0, |_| count - self.last);
         self.ends = Some([least.min(count), most.max(count)]);
         self.last = count;
+        if !(0..i64::from(moduli[0])).contains(&count) {
+            let (known, rows) = self.outside.get_or_insert((count, 0));
+            match *known == count {
+                true => *rows += 1,
+                false => self.has_others = true,
+            }
+        }
         for (largest, modulus) in self.steps.iter_mut().zip(moduli) {
             if 4 * step.abs() <= i64::from(modulus) {
                 *largest = step.abs().max(*largest);
@@ -175,6 +194,18 @@ pub(crate) fn found((jump, rows): (i64, f64), seen: &Extent, per_rev: u32) -> Op
             && over_wrap as f64 <= 2.0 * rows * *largest as f64 + ROUNDED as f64
     };
     let wraps = moduli(per_rev).into_iter().zip(seen.steps).find(wraps);
+    if let (Some((SHORT, largest)), Some((count, number)), false) =
+        (wraps, seen.outside, seen.has_others)
+    {
+        // An encoder that wraps at a revolution, and whose jumps to one number are no steps of its motion. A counter of
+        // 16 bits that passes zero has that number too, one step away.
+        let [own, _] = seen.steps;
+        let is_step =
+            (i64::from(SHORT) - jump.abs()) as f64 <= 2.0 * rows * own as f64 + ROUNDED as f64;
+        if per_rev < SHORT && 4 * largest >= 3 * i64::from(per_rev) && !is_step {
+            return Some(Found::Failed(count, number));
+        }
+    }
     let wraps = wraps.map(|(modulus, _)| modulus);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
     // An encoder of another modulus: one row passes most of the counts of the whole log.

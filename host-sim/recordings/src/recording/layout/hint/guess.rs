@@ -167,6 +167,14 @@ fn probable(layout: &Layout, column: Column, words: &[&str]) -> Option<usize> {
         .or_else(|| all().find(is_like))
         .or_else(|| all().find(has_unit))
         .or_else(|| all().find(is_translated))
+        .or_else(|| beside_time(layout, column).filter(fits))
+}
+
+/// The column beside that of the time, if there is no third one.
+fn beside_time(layout: &Layout, column: Column) -> Option<usize> {
+    let is_position = column == Column::CountsLarge && layout.names.len() == 2;
+    let time = is_position.then(|| probable(layout, Column::T, &times()))??;
+    Some(1 - time)
 }
 
 /// The part of `--column` for `column`, whose name probably has one of the `words`; `None` if the

@@ -9,11 +9,24 @@ pub(super) const TIMES: &[&str] = &["zeit", "temps", "tiempo", "tempo", "tijd"];
 
 /// Units of a position, and what they are called without accents. A German `Grad` is a degree; the
 /// English `grad` is not, so the unit is a guess.
-const UNITS: [(&str, &[&str]); 2] = [
+const UNITS: [(&str, &[&str]); 3] = [
     (
         "deg",
         &[
             "grad", "grado", "grados", "gradi", "graden", "grader", "graus", "degre", "degres",
+        ],
+    ),
+    (
+        "counts",
+        &[
+            "inkremente",
+            "inkr",
+            "impulse",
+            "impulsions",
+            "impulsos",
+            "impulsi",
+            "incrementos",
+            "incrementi",
         ],
     ),
     (
@@ -68,6 +81,7 @@ mod tests {
     fn end_of_a_name_is_a_unit_of_another_language() {
         for (name, expected) in [
             ("posicion_grados", Some("deg")),
+            ("Position [Inkremente]", Some("counts")),
             ("angle_degres", Some("deg")),
             ("angle (degr\u{e9}s)", Some("deg")),
             ("angle (degre\u{301}s)", Some("deg")),

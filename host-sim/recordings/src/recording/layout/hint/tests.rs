@@ -338,3 +338,28 @@ fn row_with_a_name_in_one_field_is_no_header() {
         "{error}"
     );
 }
+
+#[test]
+fn column_beside_the_time_is_proposed_whatever_its_name() {
+    for (names, said) in [
+        (
+            "time_us,raw",
+            "--column 't=time_us,counts_large=raw:counts', where the unit counts is a guess",
+        ),
+        (
+            "value,ms",
+            "--column 't=ms,counts_large=value:counts', where the unit counts is a guess",
+        ),
+        (
+            "time_us,ra_arcsec",
+            "counts_large=ra_arcsec:UNIT', where 'arcsec' is no unit of counts_large (counts, deg, rad, rev, mdeg, mrad): \
+             convert the numbers",
+        ),
+        ("time_us,speed", "counts_large=POSITION:counts'"),
+        ("time_us,raw,x", "counts_large=POSITION:counts'"),
+    ] {
+        let fields = "7,".repeat(names.split(',').count() - 2) + "8";
+        let error = read(&format!("{names}\n0,{fields}\n1,{fields}\n"), "").unwrap_err();
+        assert!(error.contains(said), "{names}: {error}");
+    }
+}
