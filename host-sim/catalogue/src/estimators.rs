@@ -8,6 +8,7 @@ mod run;
 
 use std::ops::Deref;
 
+use device_files::device::COUNTS_PER_REV;
 use device_files::presets::check_value;
 use estimator_catalogue::{ROWS, Row};
 use estimator_core::Hertz;
@@ -196,9 +197,50 @@ impl Kind {
             check(parameter, self.name, value)?;
         }
         (self.build)(setup, values).map_err(|error| {
-            Failure::Input(format!("{} at {} Hz: {error}", self.name, setup.rate.0))
+            let remedy = match self.coarser(setup, values) {
+                None => String::new(),
+                Some(counts) => format!(
+                    "; {}, or take another estimator, as imm",
+                    fewer_counts(setup, counts)
+                ),
+            };
+            Failure::Input(format!(
+                "{} at {} Hz: {error}{remedy}",
+                self.name, setup.rate.0
+            ))
         })
     }
+
+    /// Why a design of these values, which are within their ranges, is refused; `None` if it is not.
+    #[must_use]
+    pub fn refusal(&self, setup: &Setup, values: &Values) -> Option<String> {
+        let error = (self.build)(setup, values).err()?;
+        Some(format!("at {} Hz: {error}", setup.rate.0))
+    }
+
+    /// The most counts per revolution, by a power of two fewer than those of the device, with which these values give
+    /// an estimator; `None` if none do.
+    #[must_use]
+    pub fn coarser(&self, setup: &Setup, values: &Values) -> Option<u32> {
+        let counts = setup.stages.large.counts_per_rev;
+        let fewer = (1..u32::BITS).map(|k| counts >> k);
+        let mut fewer = fewer.take_while(|counts| COUNTS_PER_REV.contains(counts));
+        fewer.find(|&counts| {
+            let mut coarse = *setup;
+            coarse.stages.large.counts_per_rev = counts;
+            (self.build)(&coarse, values).is_ok()
+        })
+    }
+}
+
+/// What a user does where `counts` per revolution are the most that a design for `setup` admits.
+#[must_use]
+pub fn fewer_counts(setup: &Setup, counts: u32) -> String {
+    format!(
+        "with {counts} counts/rev it is possible, for a log by host-sim coarsen --fine-counts-per-rev {} \
+         --counts-per-rev {counts} --rate {}",
+        setup.stages.large.counts_per_rev, setup.rate.0
+    )
 }
 
 /// Whether `value` is in the range of a parameter of the estimator `kind`.

@@ -1,7 +1,7 @@
 //! The estimators that the shipped presets give for a device at a rate: for a fine encoder at a low rate
 //! not every design is possible in single precision.
 
-use catalogue::estimators::{Kind, Setup};
+use catalogue::estimators::{Kind, Setup, fewer_counts};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::device::Device;
 
@@ -23,35 +23,52 @@ pub fn designed(
     places: &[Place],
 ) -> (Vec<&'static Kind>, Vec<String>) {
     let mut able = Vec::new();
-    let mut left_out: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut left_out: Vec<(String, Vec<&str>, Option<Coarser>)> = Vec::new();
     for &kind in kinds {
         let why = places
             .iter()
             .find_map(|place| refusal(kind, parameters, place));
-        let Some(why) = why else {
+        let Some((why, coarser)) = why else {
             able.push(kind);
             continue;
         };
-        match left_out.iter_mut().find(|(known, _)| *known == why) {
-            Some((_, names)) => names.push(kind.name),
-            None => left_out.push((why, vec![kind.name])),
+        match left_out.iter_mut().find(|(known, ..)| *known == why) {
+            Some((_, names, all)) => {
+                names.push(kind.name);
+                let fewest = |(a, b): (Coarser, Coarser)| if a.1 < b.1 { a } else { b };
+                *all = all.zip(coarser).map(fewest);
+            }
+            None => left_out.push((why, vec![kind.name], coarser)),
         }
     }
-    let line = |(why, names): (String, Vec<&str>)| {
-        format!("estimators left out: {}: {why}", names.join(", "))
+    let line = |(why, names, coarser): (String, Vec<&str>, Option<Coarser>)| {
+        let remedy = coarser.map_or_else(String::new, |(setup, counts)| {
+            format!("; {}", fewer_counts(&setup, counts))
+        });
+        format!("estimators left out: {}: {why}{remedy}", names.join(", "))
     };
     (able, left_out.into_iter().map(line).collect())
 }
 
-/// Why the shipped parameters give no estimator; `None` if they do, or if the parameters are others.
-fn refusal(kind: &Kind, parameters: &Parameters, (setup, plant): &Place) -> Option<String> {
+/// What an estimator is not designed for, and the most counts per revolution with which it is.
+type Coarser = (Setup, u32);
+
+/// Why the shipped parameters give no estimator, and with how many counts they do; `None` if they give one, or if the
+/// parameters are others.
+fn refusal(
+    kind: &Kind,
+    parameters: &Parameters,
+    (setup, plant): &Place,
+) -> Option<(String, Option<Coarser>)> {
     let values = parameters.values(kind, setup, *plant);
-    let error = kind.build(setup, &values).err()?.to_string();
+    let why = kind.refusal(setup, &values)?;
     let are_shipped = Parameters::default().values(kind, setup, *plant) == values;
     let counts = setup.stages.large.counts_per_rev;
-    let of_kind = format!("{} ", kind.name);
-    let why = error.strip_prefix(&of_kind).unwrap_or(&error);
-    are_shipped.then(|| format!("with {counts} counts/rev {why}"))
+    are_shipped.then(|| {
+        let why = format!("with {counts} counts/rev {why}");
+        let coarser = kind.coarser(setup, &values);
+        (why, coarser.map(|counts| (*setup, counts)))
+    })
 }
 
 /// A line on tuned values that scaling to one of `places` takes to an end of their range, where they are not the best
@@ -116,6 +133,20 @@ mod tests {
         let said = "estimators left out: kalman-triple, kalman-motor: with 1048576 counts/rev at 200 Hz: \
                     process_noise must be at most 2^18 on the diagonal";
         assert!(lines.len() == 1 && lines[0].starts_with(said), "{lines:?}");
+        // Each halving of the counts takes a quarter of the process noise.
+        let counts: u32 = lines[0]
+            .rsplit_once("--counts-per-rev ")
+            .and_then(|(_, rest)| rest.split(' ').next()?.parse().ok())
+            .unwrap();
+        let remedy = format!(
+            "with {counts} counts/rev it is possible, for a log by host-sim coarsen --fine-counts-per-rev 1048576 \
+             --counts-per-rev {counts} --rate 200"
+        );
+        assert!(lines[0].ends_with(&remedy), "{lines:?}");
+        for (counts, lines) in [(counts, 0), (2 * counts, 1)] {
+            let found = designed(&kinds, &parameters, &[place(counts, 200.0)]).1;
+            assert_eq!(found.len(), lines, "{counts}: {found:?}");
+        }
         assert_eq!(able.len(), kinds.len() - 2);
         assert!(
             able.iter()

@@ -287,6 +287,19 @@ fn estimators_without_a_design_for_the_encoder_are_left_out() {
     }
 }
 
+#[test]
+fn estimator_without_a_design_for_the_encoder_runs_on_the_log_that_its_error_proposes() {
+    let folder = fine_and_slow();
+    let replay = "--estimator kalman-triple --out v.csv";
+    let line = folder.refused(&format!("replay log.csv --counts-per-rev 1048576 {replay}"));
+    let (_, command) = line.split_once("for a log by host-sim coarsen ").unwrap();
+    let (options, _) = command
+        .split_once(", or take another estimator, as imm")
+        .unwrap();
+    folder.good(&format!("coarsen log.csv {options} --out coarse.csv"));
+    folder.good(&format!("replay coarse.csv {replay}"));
+}
+
 /// Rows at `rate_hz` of a shaft that swings, for 10 000 rows at most and 12 s.
 fn at_rate(rate_hz: f64) -> String {
     let rows = (12.0 * rate_hz).min(10_000.0) as u32;
