@@ -6,6 +6,7 @@ use clap::Args;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind, Presets};
+use device_files::{decimal, to_digits};
 use experiments::tune::{
     FIRST_SEED, Group, LogFile, LogPlan, LogSearch, LogTuned, Plan, Tuned, Wishes, image_section,
 };
@@ -279,12 +280,20 @@ fn error_table(searches: &[LogSearch], tuned: &[LogTuned]) -> String {
         let numbers: String = [seen, unseen]
             .concat()
             .iter()
-            .map(|rms| format!("{rms:>11.4}"))
+            .map(|rms| format!("{:>11}", shown(*rms)))
             .collect();
         let verdict = if row.kept { "  kept" } else { "" };
         table += &format!("{:<24}{numbers}{verdict}\n", search.estimator);
     }
     table
+}
+
+/// An error with four decimals, or with four digits if it is small.
+fn shown(rms: f64) -> String {
+    match rms < 0.1 {
+        true => decimal(to_digits(rms, 4)),
+        false => format!("{rms:.4}"),
+    }
 }
 
 /// Comment line of the presets file: the tuning set of these estimators.

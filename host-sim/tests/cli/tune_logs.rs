@@ -102,6 +102,25 @@ fn found_parameters_are_better_in_the_held_out_seconds() {
     );
 }
 
+/// A telescope: 7.9e-5 rad/s at 100 Hz.
+#[test]
+fn errors_of_a_slow_device_have_four_digits() {
+    let folder = Folder::new(HOST_SIM);
+    let row = |k: u32| format!("{},{}\n", f64::from(k) / 100.0, k / 2);
+    let rows: String = (0..1200).map(row).collect();
+    folder.write("log.csv", format!("t,counts_large\n{rows}"));
+    let table =
+        folder.good("tune log.csv --counts-per-rev 4000000 --estimator low-pass --out tuned.toml");
+    let line = table.lines().find(|line| line.starts_with("low-pass"));
+    let shown: Vec<_> = line.unwrap().split_whitespace().skip(1).take(4).collect();
+    for error in shown {
+        // A count in a row is 1.6e-4 rad/s.
+        let value: f64 = error.parse().unwrap();
+        assert!(value > 0.0 && value < 1.6e-4, "{table}");
+        assert!(!error.starts_with("0.000"), "{table}");
+    }
+}
+
 #[test]
 fn assumed_encoder_and_constants_are_said() {
     let folder = Folder::new(HOST_SIM);
