@@ -5,7 +5,7 @@ mod arguments;
 use std::ffi::OsString;
 use std::time::Duration;
 
-use clap::{CommandFactory as _, Parser as _};
+use clap::CommandFactory as _;
 use drivers::{Command, Setting};
 use haptic_control::SceneKind;
 use terminal::explain;
