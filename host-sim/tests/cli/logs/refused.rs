@@ -57,9 +57,9 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         &["--column 't=when,counts_large=encoder:counts', where the unit counts is a guess; read"],
     ),
     (
-        "minutes.csv",
+        "dates.csv",
         "",
-        &["--column 't=time,counts_large=counts'; read"],
+        &["--column 't=time,counts_large=encoder:counts', where the unit counts is a guess; read"],
     ),
     (
         "two-axes.csv",
