@@ -217,3 +217,31 @@ impl Parameter {
         self.unit.starts_with("N.m")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_of_a_range_are_accepted_and_parts_of_whole_numbers_are_not() {
+        for (value, is_accepted) in [
+            (1.0, true),
+            (128.0, true),
+            (0.0, false),
+            (129.0, false),
+            (2.5, false),
+            (f64::NAN, false),
+        ] {
+            assert_eq!(Parameter::WINDOW.accepts(value), is_accepted, "{value}");
+        }
+        assert!(Parameter::CUTOFF.accepts(2.5));
+    }
+
+    #[test]
+    fn torques_and_their_densities_are_torques() {
+        let [density, torque] = [Parameter::TORQUE_NOISE, Parameter::DISTURBANCE];
+        assert!(density.is_torque() && torque.is_torque());
+        let [time, window] = [Parameter::DISTURBANCE_TIME, Parameter::WINDOW];
+        assert!(!time.is_torque() && !window.is_torque());
+    }
+}

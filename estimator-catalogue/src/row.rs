@@ -164,9 +164,13 @@ pub struct Variant {
 ///
 /// ```
 /// use estimator_catalogue::{CType, ROWS};
-/// let foaw = ROWS.iter().find(|row| row.name == "foaw-end-fit").unwrap();
-/// let names: Vec<_> = CType::of(foaw).map(|c| c.to_string()).collect();
-/// assert_eq!(names, ["foaw_end_fit_15", "foaw_end_fit_64"]);
+/// let types = |name: &str| -> Vec<String> {
+///     let row = ROWS.iter().find(|row| row.name == name).unwrap();
+///     CType::of(row).map(|c| c.to_string()).collect()
+/// };
+/// assert_eq!(types("foaw-end-fit"), ["foaw_end_fit_15", "foaw_end_fit_64"]);
+/// // The designs for its two rates have no length.
+/// assert_eq!(types("pll"), ["pll"]);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct CType {

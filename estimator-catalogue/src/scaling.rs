@@ -210,6 +210,9 @@ mod tests {
         let scaled = [(2.0, 1.0), (2.0, 0.5), (5.0, 0.01), (1.0, 0.5)]
             .map(|(tuned, rate)| window.scaled(tuned, 1.0, rate));
         assert_eq!(scaled, [2.0, 2.0, 2.0, 1.0]);
+        // 4.2 and 4.8 intervals.
+        let rounded = [1.4, 1.6].map(|rate| window.scaled(3.0, 1.0, rate));
+        assert_eq!(rounded, [4.0, 5.0]);
     }
 
     /// A coarser encoder never gets a wider band or a shorter window, and a higher rate never a
