@@ -367,4 +367,17 @@ mod tests {
             assert!(error.starts_with(said), "{text:?}: {error}");
         }
     }
+
+    #[test]
+    fn first_seconds_end_with_the_row_that_is_past_them() {
+        let row = |k: u32| format!("{},{k}\n", 5.0 + f64::from(k) / 16.0);
+        let text = format!("t,counts_large\n{}", (0..40).map(row).collect::<String>());
+        let first = |seconds| {
+            let options = ReadOptions::default();
+            let recording = Recording::parse_first(text.as_bytes(), "r", &options, seconds);
+            recording.map(|recording| recording.t.len())
+        };
+        assert_eq!(first(0.25).unwrap(), 5);
+        assert_eq!(first(0.26).unwrap(), 6);
+    }
 }

@@ -211,6 +211,12 @@ mod tests {
                 &[5, 6, 7, 8, 9, 10, 11, 8],
                 "0.008 s is before the 0.011 s above it; if the clock was set back, cut the log there",
             ),
+            // A clock that is set from 1970 to 2023, and back.
+            (
+                "ms",
+                &[0, 1, 1_700_000_000_000, 2],
+                "if the clock was set back, cut the log there",
+            ),
             (
                 "ms",
                 &[5, 6, 8, 7],
@@ -275,12 +281,14 @@ mod tests {
             let t = f64::from(k) * 1e-3 + 0.1e-3 * f64::from(k % 5);
             text += &format!("{t},{k},{},{k}\n", 84e6 * (t - 0.2e-3));
         }
-        let error = read(&text, "", Some(500.0)).unwrap_err();
-        let said = "r.csv: --row-rate 500: column 't' has 99";
-        assert!(
-            error.starts_with(said) && error.contains("leave the option out"),
-            "{error}"
-        );
+        for hz in [500.0, 2000.0] {
+            let error = read(&text, "", Some(hz)).unwrap_err();
+            let said = format!("r.csv: --row-rate {hz}: column 't' has 99");
+            assert!(
+                error.starts_with(&said) && error.contains("leave the option out"),
+                "{error}"
+            );
+        }
         let recording = read(&text, "", Some(1000.0)).unwrap();
         assert_eq!(recording.t[49], 0.049);
         let said =

@@ -87,6 +87,7 @@ pub(crate) fn measured_note(column: Column, lack: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::implausible_current;
     use crate::recording::read_log as read;
 
     const LOG: &str = "t,counts_large,current,current_measured,current_small,current_small_measured\n\
@@ -144,5 +145,15 @@ mod tests {
             );
             assert_eq!(error, said);
         }
+    }
+
+    /// A peak of a few times the limit is one of an amplifier, not of another unit.
+    #[test]
+    fn current_beyond_twenty_times_its_limit_is_doubted() {
+        let doubt = |largest_a| implausible_current(largest_a, 6.0, || None);
+        assert_eq!(doubt(120.0), None);
+        let said = "column current reaches 121 A, where large.current_limit_a is 6; if it is in mA, give --column \
+                    'current=current:mA'";
+        assert_eq!(doubt(121.0).as_deref(), Some(said));
     }
 }

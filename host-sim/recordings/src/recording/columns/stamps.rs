@@ -151,9 +151,12 @@ mod tests {
                     are on the scale of t; state their unit (ticks, s, ms, us, ns), for example --column \
                     'edge_tick=edge_tick:us'";
         assert!(error.contains(said), "{error}");
-        let recording = read(&seconds, "edge_tick=edge_tick:s").unwrap();
-        let age = recording.trace.edges.unwrap()[50].unwrap().age_s;
-        assert!((age - 0.3e-3).abs() < 1e-9, "{age}");
+        for (unit, per_s) in [("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)] {
+            let stamps = log(5.0, |_, edge| per_s * edge);
+            let recording = read(&stamps, &format!("edge_tick=edge_tick:{unit}")).unwrap();
+            let age = recording.trace.edges.unwrap()[50].unwrap().age_s;
+            assert!((age - 0.3e-3).abs() < 1e-9, "{unit}: {age}");
+        }
         let late = log(5.0, |_, edge| 84e9 * edge);
         assert!(
             read(&late, "")

@@ -107,6 +107,7 @@ impl Recording {
 
 #[cfg(test)]
 mod tests {
+    use super::Held;
     use crate::recording::Recording;
 
     /// 3 s of 1 kHz whose row k has the count of the motion `count` that `latest` gives.
@@ -114,6 +115,15 @@ mod tests {
         let row = |k: u32| format!("{}e-3,{}\n", k, count(f64::from(latest(k)) * 1e-3).floor());
         let text: String = (0..3000).map(row).collect();
         Recording::parse(format!("t,counts_large\n{text}").as_bytes(), "r.csv").unwrap()
+    }
+
+    #[test]
+    fn fifty_changes_tell_that_a_position_is_held() {
+        let mut held = Held::default();
+        (0..99).for_each(|k| held.add(k % 2 == 1));
+        assert_eq!(held.rows(), None);
+        held.add(true);
+        assert_eq!(held.rows(), Some(2));
     }
 
     fn swing(t: f64) -> f64 {

@@ -237,3 +237,17 @@ fn numbers_are_converted_to_the_units_of_a_recording() {
         [pi, -pi / 2.0],
     );
 }
+
+/// Two speeds, 100 and 201 counts a row, are near multiples of a step that no encoder has.
+#[test]
+fn counts_have_no_step_that_is_not_whole() {
+    let counts: Vec<_> = (0..400_u32)
+        .map(|k| (k / 2 * 301 + k % 2 * 100).to_string())
+        .collect();
+    let rows: Vec<_> = counts.iter().map(|count| (count.as_str(), "0")).collect();
+    let notes = read(&rows, "", &[]).unwrap().notes;
+    assert!(
+        !notes.iter().any(|note| note.contains("multiples")),
+        "{notes:?}"
+    );
+}

@@ -235,6 +235,7 @@ pub(crate) fn quotient(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::{ReadOptions, Recording};
 
     #[test]
     fn units_are_found_by_name() {
@@ -266,6 +267,49 @@ mod tests {
                     assert_eq!(quantity.unit(name), Some(unit), "{name}");
                 }
             }
+        }
+    }
+
+    /// A quarter of a turn, half an ampere, and half a turn a second.
+    #[test]
+    fn numbers_are_converted_from_every_unit() {
+        let half_ampere = ReadOptions::default()
+            .torque_constant
+            .map(|constant| 0.5 * constant);
+        for (column, unit, number, value) in [
+            ("counts_large", "counts", 1024.0, 1024.0),
+            ("counts_large", "deg", 90.0, 1024.0),
+            ("counts_large", "rad", TAU / 4.0, 1024.0),
+            ("counts_large", "rev", 0.25, 1024.0),
+            ("counts_large", "mdeg", 90e3, 1024.0),
+            ("counts_large", "mrad", 1e3 * TAU / 4.0, 1024.0),
+            ("current", "A", 0.5, 0.5),
+            ("current", "mA", 500.0, 0.5),
+            ("current", "N.m", half_ampere[0], 0.5),
+            ("current_small", "mA", 500.0, 0.5),
+            ("current_small", "N.m", half_ampere[1], 0.5),
+            ("true_omega", "rad/s", TAU / 2.0, TAU / 2.0),
+            ("true_omega", "deg/s", 180.0, TAU / 2.0),
+            ("true_omega", "rev/s", 0.5, TAU / 2.0),
+            ("true_omega", "rpm", 30.0, TAU / 2.0),
+        ] {
+            let counts = if column == "counts_large" {
+                "other"
+            } else {
+                "counts_large"
+            };
+            let text = format!("t,{counts},x\n0,0,0\n0.001,1,{number}\n");
+            let mut options = ReadOptions::default();
+            options.add_columns(&format!("{column}=x:{unit}")).unwrap();
+            let recording = Recording::parse_as(text.as_bytes(), "r.csv", &options).unwrap();
+            let trace = recording.trace;
+            let found = match column {
+                "counts_large" => f64::from(trace.counts_large[1]),
+                "current" => trace.current.unwrap()[1],
+                "current_small" => recording.current_small.unwrap()[1],
+                _ => trace.true_omega.unwrap()[1],
+            };
+            assert!((found - value).abs() < 1e-12, "{column} {unit}: {found}");
         }
     }
 }

@@ -87,6 +87,20 @@ mod tests {
         let said = "t has the digits of a 32-bit float, which are 488 us apart: if the rows are even, give --row-rate \
                     1000, or log t as a 64-bit float";
         assert_eq!(read(&float(5000.0), "").unwrap().notes, [said]);
+        // Of few rows the mean rate is not known. A line more is that of the header.
+        for (rows, is_said) in [(99, false), (100, true)] {
+            let text: Vec<_> = float(5000.0)
+                .lines()
+                .take(rows + 1)
+                .map(str::to_owned)
+                .collect();
+            let notes = read(&(text.join("\n") + "\n"), "").unwrap().notes;
+            assert_eq!(
+                notes.iter().any(|note| note.contains("32-bit")),
+                is_said,
+                "{rows}"
+            );
+        }
         let rated = read_at(Some(1000.0), &float(5000.0), "").unwrap();
         assert!(
             !rated.notes.iter().any(|note| note.contains("32-bit")),

@@ -250,4 +250,11 @@ mod tests {
             assert!(error.to_string().starts_with("--resample "), "{error}");
         }
     }
+
+    /// 0.29 times 100 is 28.999999999999996 in floats.
+    #[test]
+    fn last_row_is_kept_where_a_product_is_rounded_down() {
+        let rows = |last| resampled_rows(0.0, last, 30, 100.0, "r").unwrap();
+        assert_eq!((rows(0.29), rows(0.2899)), (30, 29));
+    }
 }

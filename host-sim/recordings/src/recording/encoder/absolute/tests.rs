@@ -3,6 +3,7 @@
 use simulation::device::Device;
 
 use super::*;
+use crate::recording::Survey;
 
 /// A shaft that turns by `step` counts a row, read by an encoder that wraps.
 fn recording(step: i64, modulus: i64, least: i64) -> (Recording, Vec<u32>) {
@@ -205,4 +206,47 @@ fn failed_readings_are_no_wraps_of_a_16_bit_counter() {
     let around_zero = |k: i64| ((k % 100) - 1).rem_euclid(65_536);
     let (_, said) = read(&around_zero);
     assert!(said[0].contains("wraps at 65536"), "{said:?}");
+}
+
+/// A bad reading one revolution away is no wrap where the counts span more than a revolution.
+#[test]
+fn counts_of_more_than_a_revolution_do_not_wrap_at_it() {
+    let count = |k: i64| if k < 1200 { 5 * k } else { 5 * k - 4095 };
+    let row = |k: i64| format!("{},{}\n", k as f64 * 1e-3, count(k));
+    let text = format!("t,counts_large\n{}", (0..1300).map(row).collect::<String>());
+    let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+    let before = recording.trace.counts_large.clone();
+    let said = recording.unwrap_counts(&encoder(4096));
+    assert_eq!(recording.trace.counts_large, before);
+    assert!(
+        said[0].starts_with("counts_large jumps by -4090 "),
+        "{said:?}"
+    );
+}
+
+/// A wrap passes three quarters of the modulus at least: a smaller jump is no reason to name one.
+#[test]
+fn modulus_is_named_where_the_jump_is_that_of_a_wrap() {
+    let option = |jump| modulus_option("counts_large", jump, 4500);
+    assert_eq!(option(-3374), "");
+    assert!(option(-3375).contains("--modulus counts_large=N, N about 4500,"));
+}
+
+/// Each encoder has a modulus of its own: the handle passes more than a quarter of the motor's from row to row.
+#[test]
+fn survey_finds_the_wraps_of_both_encoders() {
+    let row = |k: u32| {
+        format!(
+            "{},{},{}\n",
+            f64::from(k) * 1e-3,
+            3 * k % 4096,
+            2001 * k % 20_000
+        )
+    };
+    let rows: String = (0..3000).map(row).collect();
+    let text = format!("t,counts_large,counts_small\n{rows}");
+    let survey = Survey::new(text.as_bytes(), "r", &ReadOptions::default(), None).unwrap();
+    let said = ["counts_large wraps at 4096", "counts_small wraps at 20000"]
+        .map(|wraps| format!("{wraps} and is unwrapped: a revolution of an absolute encoder"));
+    assert_eq!(survey.notes, said);
 }
