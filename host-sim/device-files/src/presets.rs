@@ -349,6 +349,8 @@ mod tests {
         let row = rows.find(|row| row.name == "foaw-best-fit").unwrap();
         let n = row.parameters.iter().find(|p| p.name == "n").unwrap();
         assert_eq!(n.highest, 128.0);
+        // 0.4 intervals are rounded to none, and 0.6 to one.
+        assert!(leaves_range(n, 4.0, 1.0, 0.1) && !leaves_range(n, 4.0, 1.0, 0.15));
         for (tuned, rate, leaves) in [
             (40.0, 3.2, false),
             (40.0, 10.0, true),

@@ -211,6 +211,11 @@ mod tests {
                  quadrature encoder is four counts",
             ),
             (
+                "small.counts_per_rev = 15",
+                "small.counts_per_rev = 15: must be from 16 to 4000000 counts per revolution; a line of a \
+                 quadrature encoder is four counts",
+            ),
+            (
                 "reference.counts_per_rev = 4000001",
                 "reference.counts_per_rev = 4000001: must be from 16 to 4000000 counts per revolution; of a finer \
                  encoder, divide the counts and this number by a power of two",
@@ -338,5 +343,18 @@ mod tests {
         expected.small_ripple.friction = 0.0;
         assert_eq!(device.frictionless(), expected);
         assert_ne!(expected, device);
+    }
+
+    #[test]
+    fn counts_are_stated_by_the_key_of_the_large_motor() {
+        for (text, states) in [
+            ("[large]\ncounts_per_rev = 4096", true),
+            ("large.counts_per_rev = 4096", true),
+            ("[large]\ncoulomb_nm = 0", false),
+            ("[small]\ncounts_per_rev = 4096", false),
+            ("", false),
+        ] {
+            assert_eq!(Device::states_counts(text), states, "{text}");
+        }
     }
 }
