@@ -175,3 +175,17 @@ fn breaks(t: &[f64], period_s: f64) -> Vec<usize> {
         }))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn step_that_is_too_long_or_too_short_breaks_the_rows() {
+        assert_eq!(breaks(&[0.0, 1.0, 2.05, 3.0], 1.0), [0, 0, 0, 0]);
+        assert_eq!(
+            breaks(&[0.0, 1.0, 2.5, 3.5, 4.2, 5.2], 1.0),
+            [0, 0, 1, 1, 2, 2]
+        );
+    }
+}

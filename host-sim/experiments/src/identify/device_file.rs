@@ -93,7 +93,7 @@ fn put(
 #[cfg(test)]
 mod tests {
     use super::super::fit::Estimate;
-    use super::super::quantity::{DAMPING, INERTIA};
+    use super::super::quantity::{DAMPING, FRICTION, INERTIA};
     use super::*;
 
     fn quantity(key: &'static str, value: f64) -> Quantity {
@@ -163,5 +163,14 @@ mod tests {
         let default = Device::default().stages.large.counts_per_rev;
         let new = updated("", &quantities, known, false, default, "a.csv").unwrap();
         assert!(!new.contains("counts_per_rev"), "{new}");
+    }
+
+    #[test]
+    fn friction_below_zero_is_written_as_none() {
+        let quantities = [quantity(FRICTION, -1e-5)];
+        let known = Known::TorqueConstant(0.05);
+        let new = updated("", &quantities, known, false, 4096, "a.csv").unwrap();
+        let device = Device::from_toml_str(&new).unwrap();
+        assert_eq!(device.stages.large.coulomb_friction, 0.0, "{new}");
     }
 }
