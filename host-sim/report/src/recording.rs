@@ -228,6 +228,19 @@ mod tests {
     }
 
     #[test]
+    fn change_of_the_cause_alone_is_named_and_none_outside_the_window() {
+        let text = "t,counts_large,state,cause\n0,0,3,5\n0.001,1,3,6\n0.002,2,1,0\n";
+        let options = ReadOptions::default();
+        let recording = Recording::parse_with_board(text.as_bytes(), "r", &options).unwrap();
+        let view = RecordingView {
+            window: [0.0, 0.001],
+            ..view(&recording)
+        };
+        let changes = changes::changes(&view);
+        assert_eq!(changes, [(0.001, "safe, cause 6".to_owned())]);
+    }
+
+    #[test]
     fn each_curve_has_its_own_column_in_its_unit() {
         let text = "t,counts_large,counts_small,current,current_small,torque\n\
             0,10,20,0.5,-0.25,0.01\n0.001,11,25,0.75,0.125,-0.02\n";
