@@ -248,3 +248,31 @@ fn recordings_that_do_not_suffice_are_refused() {
         assert!(line.contains(said), "{line}");
     }
 }
+
+#[test]
+fn options_that_read_a_recording_need_one() {
+    let folder = Folder::new(HOST_SIM);
+    for option in [
+        "--resample 1000",
+        "--row-rate 1000",
+        "--counts-per-rev 4096",
+        "--modulus 4096",
+        "--column t=time",
+    ] {
+        let line = folder.refused(&format!("tune --estimator low-pass --out p.toml {option}"));
+        let said = "--resample and --counts-per-rev read a recording: give RECORDING";
+        assert!(line.contains(said), "{option}: {line}");
+    }
+}
+
+#[test]
+fn counts_that_a_recording_states_beside_the_options_are_said() {
+    let folder = Folder::new(HOST_SIM);
+    let log = log(now_slow_now_fast);
+    folder.write("stated.csv", format!("# counts_per_rev = 16384\n{log}"));
+    let output =
+        folder.run("tune stated.csv --estimator low-pass --out p.toml --counts-per-rev 4096");
+    let notes = String::from_utf8(output.stderr).unwrap();
+    let said = "stated.csv: 4096 counts/rev of the options are used; the recording states 16384";
+    assert!(notes.contains(said), "{notes}");
+}

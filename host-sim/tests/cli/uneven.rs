@@ -285,6 +285,10 @@ fn rows_in_bursts_and_counts_of_no_encoder_are_refused() {
         let line = folder.refused("real --data . --rate 500 --counts-per-rev 1000");
         assert!(line.contains(said), "{kind}: {line}");
     }
+    for command in ["recommend f.csv", "tune f.csv --estimator pll --out p.toml"] {
+        let line = folder.refused(command);
+        assert!(line.contains(said), "{command}: {line}");
+    }
     let line = folder.refused(&format!("{coarsen} 4000000000"));
     let said = "from 16 to 4000000 counts per revolution; of a finer encoder, divide the counts";
     assert!(
