@@ -275,4 +275,7 @@ fn counts_that_a_recording_states_beside_the_options_are_said() {
     let notes = String::from_utf8(output.stderr).unwrap();
     let said = "stated.csv: 4096 counts/rev of the options are used; the recording states 16384";
     assert!(notes.contains(said), "{notes}");
+    // The values are scaled from these counts.
+    let tuned = folder.text("p.toml");
+    assert!(tuned.contains("\ncounts_per_rev = 4096\n"), "{tuned}");
 }
