@@ -92,11 +92,11 @@ impl Places {
             None => Err(header::missing(column, layout, self, name)),
         };
         if options.row_rate_hz.is_none() {
-            if self
+            // A constant has no address of its own.
+            let is_monitor = self
                 .format
-                .is_some_and(|format| std::ptr::eq(format, &SIMPLEFOC))
-                && self.get(Column::T).is_none()
-            {
+                .is_some_and(|format| format.name == SIMPLEFOC.name);
+            if is_monitor && self.get(Column::T).is_none() {
                 return Err(header::without_time(&SIMPLEFOC, name));
             }
             // A time that is known by its name is not what is missing.

@@ -234,10 +234,12 @@ pub(super) fn without_value(layout: &Layout, lines: &[&str]) -> Vec<usize> {
         .collect()
 }
 
-/// The fields of the first of the rows among `lines`, those that have a name.
+/// The fields of the first of the rows among `lines`: those with a name, or all in a log without names.
 fn first_row(layout: &Layout, lines: &[&str]) -> Vec<String> {
     let mut first = rows(layout, lines).into_iter().next().unwrap_or_default();
-    first.truncate(layout.names.len());
+    if !layout.names.is_empty() {
+        first.truncate(layout.names.len());
+    }
     first
 }
 
