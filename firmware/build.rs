@@ -6,7 +6,7 @@ use std::process::Command;
 use std::{env, fs};
 
 /// What the image is built from, besides files that the environment names.
-const SOURCES: [&str; 13] = [
+const SOURCES: &[&str] = &[
     "../.cargo",
     "../Cargo.lock",
     "../Cargo.toml",
@@ -59,7 +59,7 @@ fn commit() -> String {
     };
     // Without the lock, a look does not write the index.
     let status = ["--no-optional-locks", "status", "--porcelain", "--"];
-    let status = git(&[&status[..], &SOURCES].concat());
+    let status = git(&[&status[..], SOURCES].concat());
     if status.is_some_and(|changes| changes.is_empty()) {
         commit
     } else {
