@@ -67,7 +67,9 @@ pub fn identify(
 ) -> Result<Identification, Failure> {
     let mut gathered = Gathered::default();
     for (index, (name, recording)) in recordings.iter().enumerate() {
-        if recording.trace.counts_small.is_none() && !clamped {
+        // Without the current the handle does not matter.
+        let trace = &recording.trace;
+        if trace.current.is_some() && trace.counts_small.is_none() && !clamped {
             return Err(unseen(name, device));
         }
         let current_option = current_options.get(index).and_then(Option::as_deref);

@@ -37,8 +37,8 @@ pub struct EncoderOptions {
 pub struct ColumnOptions {
     /// Read a column from the user's column of another name, with its unit: t=time_ms:ms,
     /// counts_large=angle:deg. The end of the name may be the unit (time_ms); a number is the number
-    /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev, mdeg, mrad; A, mA, N.m; rad/s,
-    /// deg/s, rev/s, rpm. Repeatable
+    /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev, mdeg, mrad, arcmin, arcsec; A, mA,
+    /// N.m; rad/s, deg/s, rev/s, rpm. Repeatable
     #[arg(long = "column", value_name = "OURS=THEIRS[:UNIT]")]
     pub columns: Vec<String>,
     /// Counts of a revolution of an absolute encoder, at which the column counts_large wraps;

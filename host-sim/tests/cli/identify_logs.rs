@@ -162,6 +162,9 @@ fn logs_that_tell_nothing_are_refused_for_their_reason() {
     let said = "no column current; torques cannot be identified from counts alone: name it, for example \
                 --column 'current=current_mA'";
     assert!(line.contains(said), "{line}");
+    // Also where the handle is not known.
+    let line = folder.refused("identify log.csv");
+    assert!(line.contains(said), "{line}");
     folder.good(&[&CLAMPED[..], &["--column", "current=current_mA"]].concat());
     let line = folder.refused(&[&CLAMPED[..], &["--column", "current=current_mA:A"]].concat());
     assert!(

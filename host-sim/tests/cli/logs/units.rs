@@ -49,7 +49,7 @@ fn end_of_a_name_that_is_no_unit_is_refused_with_the_units() {
             "counts_large",
             "angle [grad]",
             "error: r.csv: line 1: 'grad' at the end of the name is no unit of counts_large; there are \
-             counts, deg, rad, rev, mdeg, mrad; convert the numbers, or state the unit where it is one of \
+             counts, deg, rad, rev, mdeg, mrad, arcmin, arcsec; convert the numbers, or state the unit where it is one of \
              these, for example --column 'counts_large=angle [grad]:deg'",
         ),
         (
@@ -79,7 +79,7 @@ fn unit_that_is_stated_and_is_none_is_reported() {
         ),
         (
             "counts_large=counts_large:ms",
-            "'ms' is no unit of counts_large; there are counts, deg, rad, rev, mdeg, mrad\n",
+            "'ms' is no unit of counts_large; there are counts, deg, rad, rev, mdeg, mrad, arcmin, arcsec\n",
         ),
         (
             "t=x:h",

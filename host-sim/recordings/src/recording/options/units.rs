@@ -148,6 +148,8 @@ const POSITION: &[Unit] = &[
     ),
     unit(&["mdeg", "millidegrees"], Scale::PerRev(360e3)),
     unit(&["mrad", "milliradians"], Scale::PerRev(1e3 * TAU)),
+    unit(&["arcmin", "arcminutes"], Scale::PerRev(360.0 * 60.0)),
+    unit(&["arcsec", "arcseconds"], Scale::PerRev(360.0 * 3600.0)),
 ];
 
 const CURRENT: &[Unit] = &[
@@ -283,6 +285,8 @@ mod tests {
             ("counts_large", "rev", 0.25, 1024.0),
             ("counts_large", "mdeg", 90e3, 1024.0),
             ("counts_large", "mrad", 1e3 * TAU / 4.0, 1024.0),
+            ("counts_large", "arcmin", 5400.0, 1024.0),
+            ("counts_large", "arcsec", 324e3, 1024.0),
             ("current", "A", 0.5, 0.5),
             ("current", "mA", 500.0, 0.5),
             ("current", "N.m", half_ampere[0], 0.5),

@@ -352,8 +352,7 @@ fn column_beside_the_time_is_proposed_whatever_its_name() {
         ),
         (
             "time_us,ra_arcsec",
-            "counts_large=ra_arcsec:UNIT', where 'arcsec' is no unit of counts_large (counts, deg, rad, rev, mdeg, mrad): \
-             convert the numbers",
+            "--column 't=time_us,counts_large=ra_arcsec'",
         ),
         ("time_us,speed", "counts_large=POSITION:counts'"),
         ("time_us,raw,x", "counts_large=POSITION:counts'"),
