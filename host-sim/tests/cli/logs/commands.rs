@@ -13,9 +13,9 @@ fn every_command_on_recordings_takes_the_columns() {
     let plot = [&["plot", &log, "--out", "p.svg"][..], &columns].concat();
     folder.good(&plot);
     assert!(folder.names().contains("p.svg"));
-    // Read, and refused because this log has no other encoder.
+    // Read, and refused because this log has no current.
     let line = folder.refused(&[&["identify", &log][..], &columns].concat());
-    assert!(line.contains("no column counts_small"), "{line}");
+    assert!(line.contains("no column current;"), "{line}");
     let unnamed = format!("{LOGS}/unknown-names.csv");
     let line = folder.refused(&["identify", &unnamed]);
     assert!(line.contains("no column t; found: stamp"), "{line}");
