@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::{Arg, ArgMatches, Command, Parser};
 
 /// The arguments of a command line, whose first element is the program's name. Options and the command `help` are
-/// those of [`matches`].
+/// those of [`matches()`].
 ///
 /// # Errors
 /// The parser's error, for [`explain`](crate::explain()).
