@@ -23,7 +23,7 @@ class Recording:
         Counts of the encoder: integers of any type, taken modulo 2^32, so that counters may wrap and be
         negative.
     rate, t
-        Rate of the rows, Hz, or the time of each row, s.
+        Rate of the rows, 10 to 1e7 Hz, or the time of each row, s.
     current
         Current of the motor from each row to the next, A.
     coupled

@@ -63,13 +63,7 @@ impl Unchecked {
         if let Some(t) = self.t {
             return Recording::of_columns(t, self.trace, &self.name);
         }
-        let rate_hz = self.trace.rate_hz;
-        let rows = self.trace.len();
-        Ok(Recording {
-            t: (0..rows).map(|k| k as f64 / rate_hz).collect(),
-            trace: self.trace,
-            ..Recording::default()
-        })
+        Recording::at_rate(self.trace, &self.name)
     }
 }
 

@@ -45,6 +45,7 @@ use columns::currents::largest;
 use layout::{Layout, hint};
 use records::Records;
 use times::clock;
+use times::steps::FASTEST_HZ;
 
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -109,6 +110,24 @@ impl Recording {
             },
             t,
             uneven_steps,
+            ..Self::default()
+        })
+    }
+
+    /// A recording that a program has in memory, whose rows come at the constant rate of `columns`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that calls the recording `name`, if no recording has this rate.
+    pub fn at_rate(columns: Trace, name: &str) -> Result<Self, Failure> {
+        let rate_hz = columns.rate_hz;
+        if !(SLOWEST_HZ..=FASTEST_HZ).contains(&rate_hz) {
+            return Err(Failure::Input(format!(
+                "{name}: rate={rate_hz}: must be from {SLOWEST_HZ} to {FASTEST_HZ} Hz"
+            )));
+        }
+        Ok(Self {
+            t: (0..columns.len()).map(|k| k as f64 / rate_hz).collect(),
+            trace: columns,
             ..Self::default()
         })
     }
@@ -365,6 +384,25 @@ mod tests {
         ] {
             let error = parse(text).unwrap_err();
             assert!(error.starts_with(said), "{text:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn rows_at_a_rate_that_no_recording_has_are_refused() {
+        let at = |rate_hz| {
+            let columns = Trace {
+                rate_hz,
+                counts_large: vec![0, 1, 2],
+                ..Trace::default()
+            };
+            Recording::at_rate(columns, "r").map(|recording| recording.t)
+        };
+        assert_eq!(at(10.0).unwrap(), [0.0, 0.1, 0.2]);
+        assert_eq!(at(1e7).unwrap()[1], 1e-7);
+        for rate_hz in [9.9, 1.1e7, 1e30, 0.0, f64::NAN] {
+            let error = at(rate_hz).unwrap_err().to_string();
+            let said = format!("r: rate={rate_hz}: must be from 10 to 10000000 Hz");
+            assert_eq!(error, said);
         }
     }
 

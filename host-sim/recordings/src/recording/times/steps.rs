@@ -31,7 +31,7 @@ const RISE: f64 = 3.0;
 
 /// Slowest and fastest rate of a recording, Hz.
 pub const SLOWEST_HZ: f64 = *RATES_HZ.start();
-const FASTEST_HZ: f64 = *RATES_HZ.end();
+pub(crate) const FASTEST_HZ: f64 = *RATES_HZ.end();
 
 /// Steps of `t` by their length, in memory that does not grow with their number.
 ///
