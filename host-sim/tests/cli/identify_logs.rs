@@ -179,6 +179,22 @@ fn logs_that_tell_nothing_are_refused_for_their_reason() {
     assert!(line.contains("the velocity is constant"), "{line}");
 }
 
+/// A current that changes its sign in every row, one that is hardly there, and that of a moment.
+#[test]
+fn current_that_does_not_drive_the_motion_is_told() {
+    let folder = Folder::new(HOST_SIM);
+    let swing = |k: u32| (3e3 * (2e-3 * f64::from(k)).sin()).floor();
+    let alternating = |k: u32| if k.is_multiple_of(2) { 0.5 } else { -0.5 };
+    for current in [alternating, |_| 1e-300, |k| if k < 10 { 0.5 } else { 0.0 }] {
+        let row = |k: u32| format!("{}e-3,{},{}\n", k, swing(k), current(k));
+        let rows: String = (0..8000).map(row).collect();
+        folder.write("log.csv", format!("t,counts_large,current\n{rows}"));
+        let line = folder.refused(&CLAMPED);
+        let said = "log.csv: the motion does not follow column current: ";
+        assert!(line.contains(said), "{line}");
+    }
+}
+
 #[test]
 fn handle_is_doubted_with_the_motor_whose_torque_is_unexplained() {
     let folder = Folder::new(HOST_SIM);

@@ -12,6 +12,8 @@ use terminal::failure::Failure;
 
 /// Share of the motor's torque from which a model that lacks it tells nothing.
 const REFUSED_UNEXPLAINED: f64 = 0.30;
+/// Share from which a number of it says nothing: the current is not what turns the shaft.
+const UNRELATED: f64 = 10.0;
 /// Largest relative spread of a velocity that is constant.
 const CONSTANT_SPREAD: f64 = 0.05;
 /// Mean number of uneven steps per window from which the error of too few windows names the clock.
@@ -187,14 +189,6 @@ impl Gathered {
             ));
         }
         let unexplained = fit.unexplained / fit.driven;
-        if unexplained.is_nan() {
-            return Err(
-                "the motion does not follow column current: no lag and no torque constant explain it; check that \
-                 column current is that of the large motor, with its sign and in A, and that the motor drives the \
-                 shaft"
-                    .to_owned(),
-            );
-        }
         let drive = fit.estimate(|ratios, _| ratios[0]);
         let backward = drive.value < -drive.half;
         if unexplained < MOST_UNEXPLAINED && backward {
@@ -206,6 +200,13 @@ impl Gathered {
         }
         if !backward && let Some(why) = self.handle_is_reversed() {
             return Err(why);
+        }
+        if unexplained.is_nan() || unexplained >= UNRELATED {
+            return Err(
+                "the motion does not follow column current: no lag and no torque constant explain it; check that \
+                 column current is that of the large motor and in A, and that the motor turns the shaft, not a hand"
+                    .to_owned(),
+            );
         }
         if unexplained >= REFUSED_UNEXPLAINED || backward {
             return Err(format!(
