@@ -11,6 +11,13 @@ pub(crate) const SAFETY: Safety = Safety {
 };
 pub(crate) const WELL: Findings = Findings::well(Outside(false));
 
+/// The order that disables the amplifiers and restarts the control.
+pub(crate) const RESTARTED: Order = Order {
+    enable: false,
+    restart: true,
+    select: None,
+};
+
 /// Findings of a device that measures its supply.
 pub(crate) type Findings = haptic_control::Findings<Outside>;
 
@@ -144,14 +151,7 @@ fn every_cause_disables_in_its_tick_and_stays_until_rearmed() {
         for before in stopped_by(stop) {
             let mut state = before;
             let order = tick(&mut state, findings, None);
-            assert_eq!(
-                order,
-                Order {
-                    enable: false,
-                    restart: true,
-                    select: None
-                }
-            );
+            assert_eq!(order, RESTARTED);
             for request in [None, Some(Request::Select(1)), Some(Request::KeepAlive)] {
                 assert!(!tick(&mut state, WELL, request).enable);
                 assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
@@ -191,11 +191,6 @@ fn cause_has_priority_over_a_request_of_the_same_tick() {
 
 #[test]
 fn present_cause_refuses_arming_and_a_past_one_does_not() {
-    let refused = Order {
-        enable: false,
-        restart: true,
-        select: None,
-    };
     for (findings, stop) in wrongs() {
         let mut state = SAFETY.start(Stop::None);
         tick(&mut state, WELL, Some(Request::Select(3)));
@@ -207,7 +202,7 @@ fn present_cause_refuses_arming_and_a_past_one_does_not() {
             assert!(order.enable && order.restart, "{stop:?}");
             assert_eq!((state.mode(), state.stop()), (Mode::Running, Stop::None));
         } else {
-            assert_eq!(order, refused, "{stop:?}");
+            assert_eq!(order, RESTARTED, "{stop:?}");
             assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
             // The selection is gone.
             assert_eq!(tick(&mut state, WELL, Some(Request::Arm)).select, None);

@@ -1,8 +1,8 @@
 //! Requests to the safety state machine of a device that is well.
 
-use haptic_control::{Mode, Order, Request, Stop};
+use haptic_control::{Mode, Request, Stop};
 
-use crate::safety::{SAFETY, WELL, armed, running, settling, tick};
+use crate::safety::{RESTARTED, SAFETY, WELL, armed, running, settling, tick};
 
 #[test]
 fn scene_selected_during_boot_starts_at_the_first_arm() {
@@ -35,14 +35,7 @@ fn disarm_clears_scene_and_cause_and_restarts() {
     ] {
         let mut state = before;
         let order = tick(&mut state, WELL, Some(Request::Disarm));
-        assert_eq!(
-            order,
-            Order {
-                enable: false,
-                restart: true,
-                select: None
-            }
-        );
+        assert_eq!(order, RESTARTED);
         assert_eq!((state.mode(), state.stop()), (Mode::Boot, Stop::None));
         assert_eq!(tick(&mut state, WELL, Some(Request::Arm)).select, None);
         assert_eq!(state.mode(), Mode::Armed);

@@ -2,6 +2,8 @@
 
 use haptic_control::{Findings, Mode, Order, Request, Safety, SafetyState, Stop};
 
+use crate::safety::RESTARTED;
+
 pub(crate) const SAFETY: Safety = Safety {
     settle: 20,
     silence: Some(100),
@@ -127,11 +129,6 @@ fn command_timeout_stops_the_scene_and_a_selection_starts_it_again() {
 
 #[test]
 fn long_command_timeout_disarms() {
-    let disarmed = Order {
-        enable: false,
-        restart: true,
-        select: None,
-    };
     // The scene, where one is on, goes off on the way.
     for before in [armed(), running()] {
         let mut state = before;
@@ -139,7 +136,7 @@ fn long_command_timeout_disarms() {
             assert!(silent(&mut state).enable, "{k}");
             assert!(state.mode().is_enabled(), "{k}");
         }
-        assert_eq!(silent(&mut state), disarmed);
+        assert_eq!(silent(&mut state), RESTARTED);
         let boot = (Mode::Boot, Stop::CommandTimeout);
         assert_eq!((state.mode(), state.stop()), boot);
         // The cause stays until the next arm, which brings no scene back.

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 use crate::device::counts_per_rev_rule;
+use crate::presets::PlantKind;
 
 /// The text of a regular file.
 ///
@@ -127,26 +128,26 @@ fn is_meant_as_number(value: &str, error: &toml::de::Error) -> bool {
         && (reasons.iter().chain(&parts)).any(|reason| error.message().starts_with(reason))
 }
 
-/// Lines that a presets file without them lacks, by key.
-const EXAMPLES: [(&str, &str); 3] = [
-    ("rate_hz", "rate_hz = 1000, the control rate in Hz"),
-    ("plant", "plant = \"friction\" or plant = \"frictionless\""),
-    (
-        "estimators",
-        "[preset.estimators.NAME] with the values of an estimator, as host-sim tune writes it",
-    ),
-];
+/// What a file without `key` lacks.
+fn lacking(key: &str) -> String {
+    match key {
+        "rate_hz" => "rate_hz = 1000, the control rate in Hz".to_owned(),
+        "plant" => [PlantKind::Friction, PlantKind::Frictionless]
+            .map(|plant| format!("plant = \"{}\"", plant.name()))
+            .join(" or "),
+        "estimators" => {
+            "[preset.estimators.NAME] with the values of an estimator, as host-sim tune writes it"
+                .to_owned()
+        }
+        _ => format!("a line '{key} = '"),
+    }
+}
 
 /// `what`, an error of the parser about a key, with the nearest known key or with a line for one that is missing.
 fn with_remedy(what: &str) -> String {
     let quoted = |text: &str| text.split('`').nth(1).unwrap_or("").to_owned();
     if let Some(rest) = what.strip_prefix("missing field ") {
-        let key = quoted(rest);
-        let example = EXAMPLES.iter().find(|(known, _)| *known == key);
-        return match example {
-            Some((_, example)) => format!("{what}; add {example}"),
-            None => format!("{what}; add a line '{key} = '"),
-        };
+        return format!("{what}; add {}", lacking(&quoted(rest)));
     }
     let unknown = ["unknown field ", "unknown variant "]
         .iter()

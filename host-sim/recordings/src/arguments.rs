@@ -7,7 +7,9 @@ use simulation::device::{Device, parsed_counts_per_rev};
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name};
-use crate::recording::{ReadOptions, Recording, Survey, current_option, stated_counts_per_rev};
+use crate::recording::{
+    Quantity, ReadOptions, Recording, Survey, current_option, stated_counts_per_rev,
+};
 
 /// A line on counts per revolution of `source` that are `used` where a recording has `stated` others.
 #[must_use]
@@ -35,11 +37,8 @@ pub struct EncoderOptions {
 /// The columns of a recording, and its encoder and clock.
 #[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct ColumnOptions {
-    /// Read a column from the user's column of another name, with its unit: t=time_ms:ms,
-    /// counts_large=angle:deg. The end of the name may be the unit (time_ms); a number is the number
-    /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev, mdeg, mrad, arcmin, arcsec; A, mA,
-    /// N.m; rad/s, deg/s, rev/s, rpm. Repeatable
-    #[arg(long = "column", value_name = "OURS=THEIRS[:UNIT]")]
+    /// The values of `--column`.
+    #[arg(long = "column", value_name = "OURS=THEIRS[:UNIT]", help = column_help())]
     pub columns: Vec<String>,
     /// Counts of a revolution of an absolute encoder, at which the column counts_large wraps;
     /// counts_small=M for the other encoder; repeatable
@@ -92,6 +91,22 @@ pub struct Counted {
     pub is_stated: bool,
     /// A line for each recording that states its counts per revolution.
     pub lines: Vec<String>,
+}
+
+/// Help text of `--column`.
+fn column_help() -> String {
+    let quantities = [
+        Quantity::Time,
+        Quantity::Position,
+        Quantity::Current,
+        Quantity::Velocity,
+    ];
+    format!(
+        "Read a column from the user's column of another name, with its unit: t=time_ms:ms, \
+         counts_large=angle:deg. The end of the name may be the unit (time_ms); a number is the number of the \
+         column. Units: {}. Repeatable",
+        quantities.map(Quantity::list).join("; ")
+    )
 }
 
 impl ColumnOptions {

@@ -10,6 +10,7 @@ mod capture;
 mod columns;
 mod encoder;
 mod layout;
+mod memory;
 mod numbers;
 mod options;
 mod parts;
@@ -32,6 +33,7 @@ pub use numbers::shown;
 pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
 pub use options::stated::{counts_per_rev_line, stated_counts_per_rev};
+pub(crate) use options::units::Quantity;
 pub use parts::Parts;
 pub(crate) use records::kinds::check as check_kind;
 pub use survey::Survey;
@@ -44,8 +46,6 @@ use columns::Columns;
 use columns::currents::largest;
 use layout::{Layout, hint};
 use records::Records;
-use times::clock;
-use times::steps::FASTEST_HZ;
 
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -71,67 +71,6 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording that a program has in memory: its times, s, and the columns of `columns`, whose rate
-    /// and periods follow from the times.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] that calls the recording `name`, if columns differ in their number of rows, or
-    /// if `t` does not increase from row to row or has fewer than two rows.
-    pub fn of_columns(t: Vec<f64>, columns: Trace, name: &str) -> Result<Self, Failure> {
-        let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
-        for (column, rows) in lengths(&columns) {
-            if rows.is_some_and(|rows| rows != t.len()) {
-                let rows = rows.unwrap_or_default();
-                return refused(format!(
-                    "column {column} has {rows} rows where t has {}; give columns of equal length",
-                    t.len()
-                ));
-            }
-        }
-        if let Some(k) = t.windows(2).position(|pair| pair[1] <= pair[0]) {
-            let is = if t[k + 1] < t[k] {
-                "before"
-            } else {
-                "not after"
-            };
-            return refused(format!(
-                "row {}: column t: {} s is {is} the {} s above it",
-                k + 1,
-                t[k + 1],
-                t[k]
-            ));
-        }
-        let (rate_hz, uneven_steps) = clock::rate(&t, name)?;
-        Ok(Self {
-            trace: Trace {
-                rate_hz,
-                periods: clock::periods(&t, rate_hz),
-                ..columns
-            },
-            t,
-            uneven_steps,
-            ..Self::default()
-        })
-    }
-
-    /// A recording that a program has in memory, whose rows come at the constant rate of `columns`.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] that calls the recording `name`, if no recording has this rate.
-    pub fn at_rate(columns: Trace, name: &str) -> Result<Self, Failure> {
-        let rate_hz = columns.rate_hz;
-        if !(SLOWEST_HZ..=FASTEST_HZ).contains(&rate_hz) {
-            return Err(Failure::Input(format!(
-                "{name}: rate={rate_hz}: must be from {SLOWEST_HZ} to {FASTEST_HZ} Hz"
-            )));
-        }
-        Ok(Self {
-            t: (0..columns.len()).map(|k| k as f64 / rate_hz).collect(),
-            trace: columns,
-            ..Self::default()
-        })
-    }
-
     /// Reads a CSV file with the columns of this project, or a known log, for the default device.
     ///
     /// # Errors
@@ -221,17 +160,6 @@ pub fn current_option(
     Ok(hint::current(&layout.places(options, name)?, &layout))
 }
 
-/// Names of the optional and the necessary columns of a trace, with their number of rows.
-fn lengths(columns: &Trace) -> [(&'static str, Option<usize>); 5] {
-    [
-        ("counts_large", Some(columns.counts_large.len())),
-        ("counts_small", columns.counts_small.as_ref().map(Vec::len)),
-        ("current", columns.current.as_ref().map(Vec::len)),
-        ("edge_tick", columns.edges.as_ref().map(Vec::len)),
-        ("true_omega", columns.true_omega.as_ref().map(Vec::len)),
-    ]
-}
-
 /// A log of a test, read with the text of `--column` if it is not empty.
 #[cfg(test)]
 fn read_log(text: &str, columns: &str) -> Result<Recording, String> {
@@ -254,34 +182,6 @@ fn read_log_at(row_rate_hz: Option<f64>, text: &str, columns: &str) -> Result<Re
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn columns_in_memory_are_those_of_the_same_file() {
-        let text = "t,counts_large,current,true_omega\n\
-                    0,5,0.5,1\n0.001,6,0.25,2\n0.0023,9,0,3\n0.0033,10,1,4\n0.0043,11,1,5\n";
-        let read = parse(text).unwrap();
-        let columns = Trace {
-            periods: None,
-            rate_hz: 0.0,
-            ..read.trace.clone()
-        };
-        let made = Recording::of_columns(read.t.clone(), columns.clone(), "m").unwrap();
-        assert!(read.trace.periods.is_some());
-        assert_eq!(made.trace.periods, read.trace.periods);
-        assert_eq!(made.trace.rate_hz, read.trace.rate_hz);
-        assert_eq!(made.uneven_steps, read.uneven_steps);
-        let of = |t: &[f64]| {
-            let made = Recording::of_columns(t.to_vec(), columns.clone(), "m");
-            made.unwrap_err().to_string()
-        };
-        assert!(of(&[0.0, 0.001]).contains("m: column counts_large has 5 rows where t has 2"));
-        let back = of(&[0.0, 0.002, 0.001, 0.003, 0.004]);
-        assert!(
-            back.starts_with("m: row 2: column t: 0.001 s is before the 0.002 s"),
-            "{back}"
-        );
-        assert!(of(&[1.0; 5]).contains("m: row 1: column t: 1 s is not after the 1 s"));
-    }
 
     fn parse(text: &str) -> Result<Recording, String> {
         Recording::parse(text.as_bytes(), "r.csv").map_err(|failure| failure.to_string())
@@ -384,25 +284,6 @@ mod tests {
         ] {
             let error = parse(text).unwrap_err();
             assert!(error.starts_with(said), "{text:?}: {error}");
-        }
-    }
-
-    #[test]
-    fn rows_at_a_rate_that_no_recording_has_are_refused() {
-        let at = |rate_hz| {
-            let columns = Trace {
-                rate_hz,
-                counts_large: vec![0, 1, 2],
-                ..Trace::default()
-            };
-            Recording::at_rate(columns, "r").map(|recording| recording.t)
-        };
-        assert_eq!(at(10.0).unwrap(), [0.0, 0.1, 0.2]);
-        assert_eq!(at(1e7).unwrap()[1], 1e-7);
-        for rate_hz in [9.9, 1.1e7, 1e30, 0.0, f64::NAN] {
-            let error = at(rate_hz).unwrap_err().to_string();
-            let said = format!("r: rate={rate_hz}: must be from 10 to 10000000 Hz");
-            assert_eq!(error, said);
         }
     }
 
