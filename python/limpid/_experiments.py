@@ -76,6 +76,7 @@ def coarsen(
     columns: Columns = (),
     modulus: Modulus = None,
     row_rate: float | None = None,
+    drop_stale: bool = False,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Recording:
     """What an encoder of ``counts_per_rev`` would have seen of the recording of a finer one.
@@ -95,7 +96,7 @@ def coarsen(
         Position of the boundaries of the coarse encoder, coarse counts.
     seconds
         Part of the recording that is used, s from its start [default: all].
-    columns, modulus, row_rate
+    columns, modulus, row_rate, drop_stale
         As in :func:`read_log`.
     device
         Path of a device file or a dict; its torque constant turns torque into current.
@@ -104,6 +105,7 @@ def coarsen(
         path,
         *column_options(columns, modulus),
         row_rate,
+        drop_stale,
         counts_per_rev,
         fine_counts_per_rev,
         rate,

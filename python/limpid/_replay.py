@@ -151,6 +151,7 @@ def read_log(
     columns: Columns = (),
     modulus: Modulus = None,
     row_rate: float | None = None,
+    drop_stale: bool = False,
     resample: float | None = None,
     counts_per_rev: SupportsIndex | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
@@ -169,6 +170,8 @@ def read_log(
         Counts at which an absolute encoder wraps; ``{"counts_small": 4096}`` for the other encoder.
     row_rate
         Rate of the rows, Hz, for a log without a column of time.
+    drop_stale
+        Leave out rows in which the position stays in a fast motion, as where a bus lost a message.
     resample
         Replace the rows by rows at this rate, Hz.
     counts_per_rev
@@ -184,7 +187,8 @@ def read_log(
     OSError
         The file cannot be opened.
     """
-    fields = _limpid.read_log(path, *column_options(columns, modulus), row_rate, resample, counts_per_rev, device)
+    names, moduli = column_options(columns, modulus)
+    fields = _limpid.read_log(path, names, moduli, row_rate, drop_stale, resample, counts_per_rev, device)
     return Recording(**fields)
 
 

@@ -141,6 +141,9 @@ pub(crate) fn check_file(py: Python<'_>, path: &Path) -> PyResult<()> {
     opened().map_err(|error| os_error(py, error, path))
 }
 
+/// Options without a value.
+const FLAGS: [&str; 1] = ["drop-stale"];
+
 /// A message for the command line with keywords of this package instead of options:
 /// `--resample 1000` is `resample=1000`.
 pub(crate) fn in_python(message: &str) -> String {
@@ -159,6 +162,9 @@ pub(crate) fn in_python(message: &str) -> String {
             _ => name.replace('-', "_"),
         });
         text.push('=');
+        if FLAGS.contains(&name) {
+            text.push_str("True");
+        }
         if name == "modulus"
             && let Some((dict, after)) = after.strip_prefix(' ').and_then(modulus)
         {

@@ -16,13 +16,14 @@ use crate::integer::CountsPerRev;
 
 /// Reads a log; the keywords of `limpid.Recording`.
 #[pyfunction]
-#[pyo3(signature = (path, columns, modulus, row_rate, resample, counts_per_rev, device))]
+#[pyo3(signature = (path, columns, modulus, row_rate, drop_stale, resample, counts_per_rev, device))]
 pub(crate) fn read_log<'py>(
     py: Python<'py>,
     path: PathBuf,
     columns: Vec<String>,
     modulus: Vec<String>,
     row_rate: Option<f64>,
+    drop_stale: bool,
     resample: Option<f64>,
     counts_per_rev: Option<CountsPerRev>,
     device: Option<DeviceFile>,
@@ -32,6 +33,7 @@ pub(crate) fn read_log<'py>(
             columns,
             modulus,
             row_rate,
+            drop_stale,
         },
         resample,
         ..RecordingOptions::default()

@@ -71,13 +71,14 @@ pub(crate) fn simulate<'py>(
 
 /// What a coarse encoder would have seen of a fine recording, as keywords of `limpid.Recording`.
 #[pyfunction]
-#[pyo3(signature = (path, columns, modulus, row_rate, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device))]
+#[pyo3(signature = (path, columns, modulus, row_rate, drop_stale, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device))]
 pub(crate) fn coarsen<'py>(
     py: Python<'py>,
     path: PathBuf,
     columns: Vec<String>,
     modulus: Vec<String>,
     row_rate: Option<f64>,
+    drop_stale: bool,
     counts_per_rev: CountsPerRev,
     fine_counts_per_rev: Option<Integer>,
     rate: f64,
@@ -101,6 +102,7 @@ pub(crate) fn coarsen<'py>(
             columns,
             modulus,
             row_rate,
+            drop_stale,
         },
         device,
     };

@@ -95,6 +95,16 @@ def test_rows_are_resampled(data):
     assert len(limpid.replay(log, estimator="foaw-end-fit").velocity) == len(log)
 
 
+def test_stale_readings_are_named_and_left_out(data):
+    path = data / "logs" / "stale-readings.csv"
+    log = limpid.read_log(path)
+    assert any("stays in 5 rows" in note and "add drop_stale=True to leave" in note for note in log.notes)
+    log = limpid.read_log(path, drop_stale=True)
+    kept = np.setdiff1d(np.arange(240), [21, 45, 46, 70, 90]) / 1000
+    np.testing.assert_allclose(log.t, kept, atol=1e-9)
+    np.testing.assert_array_equal(log.counts, motion(kept)[0])
+
+
 @pytest.mark.parametrize(
     ("name", "said"),
     [

@@ -7,6 +7,7 @@ use simulation::device::{Device, parsed_counts_per_rev};
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name};
+use crate::recording::stale::{FAST, LONGEST};
 use crate::recording::{
     Quantity, ReadOptions, Recording, Survey, current_option, stated_counts_per_rev,
 };
@@ -47,6 +48,9 @@ pub struct ColumnOptions {
     /// Rate of the rows, for a recording without a column of time
     #[arg(long, value_name = "HZ")]
     pub row_rate: Option<f64>,
+    /// Leave out stale readings.
+    #[arg(long, help = drop_stale_help())]
+    pub drop_stale: bool,
 }
 
 /// How a recording is read.
@@ -109,6 +113,14 @@ fn column_help() -> String {
     )
 }
 
+/// Help text of `--drop-stale`.
+fn drop_stale_help() -> String {
+    format!(
+        "Leave out rows in which counts_large stays though the shaft turned by {FAST} counts or more in the row before: \
+         stale readings, as where a bus lost a message. At most {LONGEST} in turn: a shaft that stays for longer rests"
+    )
+}
+
 impl ColumnOptions {
     /// What the options say about the log of `device`.
     ///
@@ -125,6 +137,7 @@ impl ColumnOptions {
         if let Some(hz) = self.row_rate {
             options.set_row_rate(hz)?;
         }
+        options.drop_stale = self.drop_stale;
         Ok(options)
     }
 }
@@ -155,7 +168,7 @@ impl RecordingOptions {
             return Ok(());
         }
         Err(Failure::Input(format!(
-            "--column, --modulus, --row-rate, --resample and --counts-per-rev read a recording: give {give}"
+            "--column, --modulus, --row-rate, --drop-stale, --resample and --counts-per-rev read a recording: give {give}"
         )))
     }
 

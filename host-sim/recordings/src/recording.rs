@@ -28,6 +28,7 @@ pub use board::BoardColumns;
 pub use capture::Capture;
 pub use columns::currents::implausible_current;
 pub use encoder::absolute::{after, boundary};
+pub(crate) use encoder::stale;
 pub use layout::formats::{KnownLog, known_logs};
 pub use numbers::shown;
 pub(crate) use options::MEASURED;

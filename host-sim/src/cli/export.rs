@@ -43,7 +43,7 @@ pub(super) struct Export {
     mcap: Option<PathBuf>,
     /// Write the parameters of --estimator as a C constant for limpid.h, no recording is read
     #[arg(long, requires = "estimators", conflicts_with_all =
-        ["recording", "mcap", "columns", "modulus", "row_rate", "resample"])]
+        ["recording", "mcap", "columns", "modulus", "row_rate", "drop_stale", "resample"])]
     c: bool,
     #[command(flatten)]
     design: Design,

@@ -64,6 +64,7 @@ fn options_of_a_recording_are_refused_without_one() {
         "--column t=t",
         "--modulus 4096",
         "--row-rate 1000",
+        "--drop-stale",
         "--resample 1000",
     ] {
         let arguments = format!("export --c --estimator pll {option}");

@@ -102,6 +102,33 @@ fn true_steps_have_a_smaller_error_than_a_constant_period() {
     }
 }
 
+/// 1 % of the readings of a swing of up to 12 rad/s are stale; 16384 counts per revolution.
+#[test]
+fn stale_readings_cost_a_bank_most_of_its_accuracy() {
+    let folder = Folder::new(HOST_SIM);
+    let mut text = "t,counts_large\n".to_owned();
+    let mut last = 0.0;
+    for k in 0..5000 {
+        let t = 1e-3 * f64::from(k);
+        if k % 101 != 50 {
+            last = (4.0 * COUNTS_PER_REV / TAU * 3.0 * (4.0 * t).sin()).floor();
+        }
+        text += &format!("{t:.3},{last}\n");
+    }
+    folder.write("bus.csv", text);
+    let rms = |options: &[&str]| {
+        let base = "replay bus.csv --estimator imm --counts-per-rev 16384";
+        let base: Vec<_> = base.split(' ').collect();
+        let rows = velocities(&folder, &[&base[..], options].concat());
+        let squares = rows[500..].iter();
+        let squares = squares.map(|[t, velocity]| (velocity - 12.0 * (4.0 * t).cos()).powi(2));
+        (squares.sum::<f64>() / (rows.len() - 500) as f64).sqrt()
+    };
+    let [with, without] = [rms(&[]), rms(&["--drop-stale"])];
+    println!("RMS of imm {with:.3} rad/s with stale readings, {without:.3} without");
+    assert!(10.0 * without < with, "{with} {without}");
+}
+
 #[test]
 fn estimators_that_assume_a_constant_period_are_left_out_with_one_note() {
     let folder = Folder::new(HOST_SIM);

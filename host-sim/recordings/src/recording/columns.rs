@@ -9,6 +9,7 @@ use terminal::failure::Failure;
 
 use super::Recording;
 use super::board::Board;
+use super::encoder::stale::Stale;
 use super::encoder::{Encoder, absolute};
 use super::layout::{Layout, Place, Places};
 use super::options::units::WRAP;
@@ -31,7 +32,7 @@ const MARKED: [Column; 2] = [Column::CountsLarge, Column::CountsSmall];
 
 /// The columns that are read, and their rows so far.
 pub(super) struct Columns<'a> {
-    options: &'a ReadOptions,
+    pub(super) options: &'a ReadOptions,
     places: [Option<Place>; Column::ALL.len()],
     /// The log's own times, which --row-rate replaces.
     replaced_place: Option<Place>,
@@ -49,6 +50,7 @@ pub(super) struct Columns<'a> {
     lines: LineNumbers,
     pub(super) counts_large: Encoder,
     pub(super) counts_small: Encoder,
+    pub(super) stale: Stale,
     current: Current,
     current_small: Current,
     edges: Vec<Option<EdgeStamp>>,
@@ -81,6 +83,7 @@ impl<'a> Columns<'a> {
             lines: LineNumbers::default(),
             counts_large: Encoder::default(),
             counts_small: Encoder::default(),
+            stale: Stale::default(),
             current: Current::default(),
             current_small: Current::default(),
             edges: Vec::new(),
@@ -135,26 +138,36 @@ impl<'a> Columns<'a> {
             self.repeated.add(row.line, t);
             return Ok(());
         }
-        if self.taken == 0 {
-            self.first_t = t;
-        }
-        self.last_t = t;
         let replaced = self
             .replaced_place
             .and_then(|at| self.own_times.of(row, at).ok());
         if let Some(own) = replaced {
             self.replaced.add(own);
         }
+        let options = self.options;
+        let large = self.place(Column::CountsLarge);
+        let large = large.map(|at| self.counts_large.reading(row, at, options, 0));
+        let large = large.transpose()?;
+        if let Some(large) = large {
+            if options.drop_stale && self.stale.is_left_out(large.raw, row.line) {
+                return Ok(());
+            }
+            self.stale.add(large.raw, t, row.line);
+        }
+        if self.taken == 0 {
+            self.first_t = t;
+        }
+        self.last_t = t;
         self.taken += 1;
         self.t.push(t);
         self.lines.push(row.line);
-        let options = self.options;
-        if let Some(at) = self.place(Column::CountsLarge) {
-            let count = self.counts_large.take(row, at, options, 0)?;
+        if let Some(large) = large {
+            let count = self.counts_large.add(large, row, options, 0)?;
             self.jitter.add(t, count);
         }
         if let Some(at) = self.place(Column::CountsSmall) {
-            self.counts_small.take(row, at, options, 1)?;
+            let small = self.counts_small.reading(row, at, options, 1)?;
+            self.counts_small.add(small, row, options, 1)?;
         }
         let places = [Column::Current, Column::CurrentMeasured].map(|column| self.place(column));
         self.current.take(row, places, options.torque_constant[0])?;
@@ -200,7 +213,10 @@ impl<'a> Columns<'a> {
     fn time(&mut self, row: &Row) -> Result<f64, Failure> {
         match (self.options.row_rate_hz, self.place(Column::T)) {
             (None, Some(at)) => self.own_times.of(row, at),
-            (rate_hz, _) => Ok(self.taken as f64 / rate_hz.unwrap_or(1.0)),
+            (rate_hz, _) => {
+                let rows = self.taken + self.stale.left_out();
+                Ok(rows as f64 / rate_hz.unwrap_or(1.0))
+            }
         }
     }
 
@@ -289,6 +305,7 @@ impl<'a> Columns<'a> {
         notes.extend(clock::fast(rate_hz));
         notes.extend(self.jitter(rate_hz));
         notes.extend(self.held(rate_hz));
+        notes.extend(self.stale(rate_hz));
         let mut gaps = Gaps::default();
         for (k, step) in self.t.windows(2).enumerate() {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));

@@ -4,6 +4,7 @@ pub(super) mod absolute;
 mod clipped;
 pub(super) mod grid;
 pub(super) mod held;
+pub(crate) mod stale;
 
 use device_files::to_digits;
 use estimator_core::Count;
@@ -63,18 +64,27 @@ pub(super) struct Encoder {
     has_counts: bool,
 }
 
+/// The reading of an encoder in a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading {
+    /// Counts before they are unwrapped.
+    pub(super) raw: i64,
+    /// Counts with a fraction.
+    exact: f64,
+}
+
 impl Encoder {
-    /// Adds the count of a row and returns it.
-    pub(super) fn take(
+    /// The reading of a row, of which nothing is kept but how it is rounded.
+    pub(super) fn reading(
         &mut self,
         row: &Row,
         at: Place,
         options: &ReadOptions,
         motor: usize,
-    ) -> Result<u32, Failure> {
+    ) -> Result<Reading, Failure> {
         let column = at.column.name();
         self.is_counts = true;
-        let (raw, exact) = match at.unit.scale {
+        Ok(match at.unit.scale {
             Scale::PerRev(per_rev) => {
                 self.is_counts = false;
                 let position = row.number(column, at.place)?;
@@ -93,14 +103,30 @@ impl Encoder {
                 self.rounded = self.rounded.max((exact - origin - whole).abs());
                 let float_step = f64::from(float_step(position as f32)) * counts_per_unit;
                 self.float_step = self.float_step.max(float_step);
-                (whole as i64, exact)
+                Reading {
+                    raw: whole as i64,
+                    exact,
+                }
             }
             _ => {
                 let raw = row.count(column, at.place)?;
                 self.clipped.add(raw);
-                (raw, raw as f64)
+                Reading {
+                    raw,
+                    exact: raw as f64,
+                }
             }
-        };
+        })
+    }
+
+    /// Adds the reading of a row and returns its count.
+    pub(super) fn add(
+        &mut self,
+        Reading { raw, exact }: Reading,
+        row: &Row,
+        options: &ReadOptions,
+        motor: usize,
+    ) -> Result<u32, Failure> {
         if let Some(before) = self.exact.replace(exact) {
             self.grid.add(exact - before);
             self.held.add(exact != before);
@@ -116,6 +142,7 @@ impl Encoder {
                 let last = self.last.unwrap_or(reading);
                 let next = Count(last).wrapped(reading, modulus);
                 let refused = |why: &str| {
+                    let column = Column::COUNTS[motor].name();
                     row.failure(column, &format!("{raw} with --modulus {modulus}: {why}"))
                 };
                 if !within {

@@ -116,8 +116,8 @@ pub struct ReadOptions {
     pub(super) counts_per_rev: [u32; 2],
     /// How a user gives each of them.
     pub(super) counts_given: [String; 2],
-    /// Whether a user gives a modulus.
-    pub(super) takes_modulus: bool,
+    /// Whether a user gives options.
+    pub(super) takes_options: bool,
     /// Torque constants of the large and of the small motor, N.m/A.
     pub(super) torque_constant: [f64; 2],
     /// Limit of the large motor's current, A.
@@ -126,6 +126,8 @@ pub struct ReadOptions {
     pub(super) modulus: [Option<u32>; 2],
     /// Rate of the rows, for a recording without a column of time.
     pub(super) row_rate_hz: Option<f64>,
+    /// Whether rows with stale readings of the large motor's encoder are left out.
+    pub(crate) drop_stale: bool,
 }
 
 impl ReadOptions {
@@ -141,11 +143,12 @@ impl ReadOptions {
                 format!("with --counts-per-rev, or {}", in_file("large")),
                 in_file("small"),
             ],
-            takes_modulus: true,
+            takes_options: true,
             torque_constant: [stages.large.torque_constant, stages.small.torque_constant],
             current_limit: stages.large.current_limit,
             modulus: [None; 2],
             row_rate_hz: None,
+            drop_stale: false,
         }
     }
 
@@ -161,7 +164,7 @@ impl ReadOptions {
     #[must_use]
     pub fn of_list(self, list: &str) -> Self {
         Self {
-            takes_modulus: false,
+            takes_options: false,
             ..self.with_counts_given(&format!("in {list}"))
         }
     }

@@ -127,6 +127,7 @@ impl Survey {
         notes.extend(clock::fast(rate_hz));
         notes.extend(columns.jitter(rate_hz));
         notes.extend(columns.held(rate_hz).filter(|_| resample.is_none()));
+        notes.extend(columns.stale(rate_hz));
         let mut wraps = [None; 2];
         for (motor, seen) in seen.iter().enumerate() {
             let jump = steps.largest_jump(1.0 / rate_hz, motor);

@@ -138,6 +138,33 @@ fn uneven_rows_become_even() {
 }
 
 #[test]
+fn stale_readings_are_named_and_left_out() {
+    let folder = Folder::new(HOST_SIM);
+    let off = |rows: &[[f64; 2]]| {
+        let moved = |k: usize| counts(rows[k + 1][0]) - counts(rows[k][0]);
+        let periods = |k: usize| (rows[k + 1][0] - rows[k][0]) * 1e3;
+        let off = steps(rows).into_iter().enumerate();
+        let off = off.map(|(k, step)| (step * periods(k) - moved(k)).abs());
+        off.fold(0.0, f64::max)
+    };
+    let (rows, notes) = replay(&folder, "stale-readings.csv", "");
+    let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = "counts_large stays in 5 rows of a fast motion and makes up for it in the next row, the first in line 23: \
+                the readings are stale, as where a bus lost a message, and the estimators take them for a stop and a jump; \
+                add --drop-stale to leave these rows out";
+    assert!(notes.contains(said), "{notes}");
+    assert_eq!(rows.len(), ROWS);
+    assert!(off(&rows) > 10.0);
+    let (rows, notes) = replay(&folder, "stale-readings.csv", "--drop-stale");
+    let said =
+        "5 rows are left out where counts_large stays in a fast motion, the first in line 23";
+    assert!(notes.contains(said), "{notes}");
+    assert!(!notes.contains("--drop-stale"), "{notes}");
+    assert_eq!(rows.len(), ROWS - 5);
+    assert!(off(&rows) < 1e-3, "{}", off(&rows));
+}
+
+#[test]
 fn torque_is_divided_by_the_torque_constant() {
     // The files have 0.05 times the current as torque; a device with 0.05 N.m/A has the current again.
     let folder = Folder::new(HOST_SIM);

@@ -76,7 +76,7 @@ impl Found {
                     false => "counter of 16 bits",
                 }
             ),
-            Self::Jumps(jump, span) if options.takes_modulus && is_fast(jump, span, per_rev) => {
+            Self::Jumps(jump, span) if options.takes_options && is_fast(jump, span, per_rev) => {
                 format!(
                     "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
                  counts per revolution: if the encoder is absolute, it turns by more than a quarter of a revolution from \
@@ -87,7 +87,7 @@ impl Found {
                 "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
                  counts per revolution: if the encoder is absolute, give its counts {}{}",
                 options.counts_given[motor],
-                match options.takes_modulus {
+                match options.takes_options {
                     true => modulus_option(column, jump, span),
                     false => String::new(),
                 }
