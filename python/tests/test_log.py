@@ -109,7 +109,7 @@ def test_stale_readings_are_named_and_left_out(data):
     ("name", "said"),
     [
         ("unknown-names.csv", ["found: stamp; shaft; speed", "columns='t=stamp:s,"]),
-        ("no-header.csv", ["no names but 2 columns", "columns=t=1:s,counts_large=2:rad"]),
+        ("no-header.csv", ["no names but 2 columns", "columns=t=1:ms,counts_large=2:rad"]),
         ("not-a-number.csv", ["line 7: column counts_large: 'n/a' is not a number"]),
         ("time-goes-back.csv", ["line 4: column t: 0.0005 s is before the 0.001 s"]),
         ("seconds-in-ms.csv", ["column t: rows 1 s apart", "columns=t=NAME:ms"]),

@@ -9,7 +9,7 @@ use experiments::recommend::{self, Settings, recommend};
 use experiments::rows::json;
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::Recording;
+use recordings::recording::{Motion, Recording};
 use report::Printout;
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note};
@@ -113,7 +113,13 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
     let header = |width: usize| {
         let rows: Vec<_> = logs
             .iter()
-            .map(|(name, log)| format!("{name}: {} rows at {} Hz", log.t.len(), log.trace.rate_hz))
+            .map(|(name, log)| {
+                let mut motion = Motion::default();
+                motion.add(&log.t, &log.trace.counts_large);
+                let motion = motion.line(counts_per_rev);
+                let rows = log.t.len();
+                format!("{name}: {rows} rows at {} Hz, {motion}", log.trace.rate_hz)
+            })
             .collect();
         let header = wrapped(
             &format!("{}; {counts_per_rev} counts/rev", rows.join("; ")),

@@ -13,7 +13,7 @@ use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::Parts;
+use recordings::recording::{Motion, Parts};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole};
 use terminal::wording::wrapped;
@@ -118,6 +118,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
         summary: BoardSummary::default(),
         truth: TruthCheck::default(),
+        motion: Motion::default(),
         counts_per_rev: device.stages.large.counts_per_rev,
         bar: progress(
             rows.div_ceil(section_rows(rows)) * run.estimates.len(),
@@ -188,7 +189,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         &device_name(options, counted.is_stated),
         &parameters,
     );
-    let header = format!("{header}{against}");
+    let motion = passes.motion.line(device.stages.large.counts_per_rev);
+    let header = format!("{header}; {motion}{against}");
     let header = wrapped(&format!("{name}: {header}"), 2);
     if json_to_stdout || out.is_some_and(is_stdout) {
         note(header);

@@ -5,8 +5,8 @@ mod clipped;
 pub(super) mod grid;
 pub(super) mod held;
 pub(crate) mod stale;
+mod stepped;
 
-use device_files::to_digits;
 use estimator_core::Count;
 use terminal::failure::Failure;
 
@@ -18,18 +18,6 @@ use super::text::row::Row;
 use clipped::Clipped;
 use grid::Grid;
 use held::Held;
-
-/// Distance from a whole count from which positions are reported as rounded.
-const ROUNDED: f64 = 0.25;
-
-/// Counts of the log in a step of its positions from which the step is reported.
-const COARSE: f64 = 1.5;
-
-/// Units of which a revolution is no whole number: no encoder has a decimal part of one as its step.
-const IRRATIONAL: [&str; 2] = ["rad", "mrad"];
-
-/// Largest relative difference of the last digit of a log from the step of its positions.
-const DIGIT: f64 = 1e-3;
 
 /// Number of changes between 0 and 1 from which a column may be one line of an encoder. Fewer are those of a
 /// shaft that is hardly turned.
@@ -185,66 +173,6 @@ impl Encoder {
         let rows = self.held.rows().filter(|_| self.grid.is_varied())?;
         Some(held::note(Column::COUNTS[motor].name(), rows, rate_hz))
     }
-
-    /// What is wrong with `counts_per_rev`, which a user gives as `given` says, by the step of the positions.
-    fn stepped(&self, counts_per_rev: u32, given: &str) -> Option<String> {
-        let step = self.grid.step();
-        let step = step.filter(|step| !self.is_counts || step.fract() == 0.0);
-        let coarse = step.filter(|step| *step >= COARSE);
-        if let (Some(step), true) = (coarse, self.is_counts) {
-            return Some(format!(
-                "the count changes by multiples of {step} alone: divide the column and the counts per revolution by \
-                 {step}, because the estimators take each count for one of the encoder"
-            ));
-        }
-        if let (Some(step), Some((counts_per_unit, "rev"))) = (coarse, self.unit)
-            && (step / counts_per_unit).fract() == 0.0
-        {
-            return Some(
-                "positions are whole revolutions alone: if the numbers are counts, name their unit with --column \
-                 OURS=THEIRS:counts"
-                    .to_owned(),
-            );
-        }
-        let off = match (coarse, self.rounded > ROUNDED) {
-            (_, true) => format!(
-                "positions are up to {:.2} counts from whole counts with {counts_per_rev} counts/rev and are rounded \
-                 to the nearest",
-                self.rounded
-            ),
-            (Some(step), false) => format!(
-                "positions change by multiples of {} counts alone with {counts_per_rev} counts/rev",
-                shown(to_digits(step, 4))
-            ),
-            (None, false) => return None,
-        };
-        // A step that 32 bits do not resolve is theirs.
-        let own = step.filter(|step| *step > self.float_step);
-        let own = own.map(|step| (f64::from(counts_per_rev) / step).round());
-        if let (Some(step), Some((counts_per_unit, unit))) = (step, self.unit)
-            && IRRATIONAL.contains(&unit)
-            && let Some(digit) = power_of_ten(step / counts_per_unit)
-        {
-            return Some(format!(
-                "{off}; they are multiples of {} {unit}, the last digit of the log: log more digits",
-                shown(digit)
-            ));
-        }
-        Some(match own {
-            Some(own) if own >= 2.0 => format!(
-                "{off}; they are multiples of 1/{own} revolution: if these are the encoder's counts, give {own} \
-                 counts/rev {given}"
-            ),
-            _ => format!("{off}; if the encoder has more counts, give them {given}"),
-        })
-    }
-}
-
-/// The power of ten that `step` is; `None` if it is none.
-fn power_of_ten(step: f64) -> Option<f64> {
-    let power = to_digits(step, 1);
-    let is_power = (power.log10() - power.log10().round()).abs() < 1e-9;
-    (is_power && (step / power - 1.0).abs() < DIGIT).then_some(power)
 }
 
 /// Distance of a number of 32 bits from the next larger one.

@@ -9,6 +9,7 @@ mod labview;
 mod notes;
 mod places;
 mod search;
+mod seen;
 pub(super) mod sources;
 mod stating;
 mod twincat;
@@ -29,6 +30,7 @@ use search::{
     fractional, is_content, moments, named, numbers, probable, since_1970, two_levels,
     without_value,
 };
+use seen::Seen;
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 
@@ -57,6 +59,8 @@ pub(super) struct Layout {
     pub(super) two_levels: Vec<usize>,
     /// Places of the columns that have a number with a fraction in the first rows.
     pub(super) fractional: Vec<usize>,
+    /// What the numbers of each column tell in the first rows; empty where no rows are seen.
+    pub(super) seen: Vec<Seen>,
     /// Places of the columns that have no value in the first rows.
     pub(super) without_value: Vec<usize>,
     /// Whether the first line of a text without a header is left out, because its first number may be cut.
@@ -146,6 +150,7 @@ impl Layout {
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
             fractional: fractional(&layout, &lines),
+            seen: Seen::of(&layout, &lines),
             without_value: without_value(&layout, &lines),
             since_1970: since_1970(&layout, &lines),
             moments: moments(&layout, &lines),
@@ -169,6 +174,7 @@ impl Layout {
             searched: None,
             two_levels: Vec::new(),
             fractional: Vec::new(),
+            seen: Vec::new(),
             without_value: Vec::new(),
             cuts_first: false,
             since_1970: Vec::new(),
@@ -244,7 +250,10 @@ impl Layout {
             let known = columns
                 .map(|names| names.len())
                 .any(|n| n == self.names.len());
-            return (known && self.separator == Separator::Tab).then_some(&SIMPLEFOC);
+            // It writes fractions, and first a target. A whole number that rises in each row is a time.
+            let rises = self.seen.first().is_some_and(|first| first.step.is_some());
+            let is_timed = rises && !self.fractional.contains(&0);
+            return (known && self.separator == Separator::Tab && !is_timed).then_some(&SIMPLEFOC);
         }
         Format::of(&self.names)
     }

@@ -19,7 +19,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         "",
         &[
             "no names but 2 columns",
-            "--column t=1:s,counts_large=2:rad, where the units s and rad are guesses; read",
+            "--column t=1:ms,counts_large=2:rad, where the units ms and rad are guesses; read",
         ],
     ),
     (
@@ -28,7 +28,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         &[
             "line 1 has 4 names, and the rows have 3 columns",
             "write one name for each column, or give the numbers",
-            "--column t=1:s,counts_large=2:rad, where",
+            "--column t=1:ms,counts_large=2:rad, where",
         ],
     ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),

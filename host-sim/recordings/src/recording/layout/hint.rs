@@ -9,12 +9,12 @@ use super::endings::Ending;
 use super::formats::Ambiguous;
 use super::header::short;
 use super::search::{is_number, number};
-use super::{Keyed, Layout, Places, has, is_duration};
+use super::{Keyed, Layout, Places, has, is_duration, seen};
 use crate::recording::options::Column;
 use crate::recording::options::units::Quantity;
 use crate::recording::records::labelled::is_labelled;
-use guess::{ANGLE, guesses, is_unfit, parts, positions, times};
-pub(crate) use guess::{current, example, guessed_unit, theirs};
+pub(crate) use guess::{current, guessed_unit, theirs};
+use guess::{guesses, is_unfit, parts, positions, times};
 
 /// Positions that a message lists.
 const LISTED: usize = 4;
@@ -62,8 +62,8 @@ pub(crate) fn option(layout: &Layout, places: &Places) -> String {
     )
 }
 
-/// The value of `--column` for columns without names: by the first row, the time is a time since 1970 or the
-/// first number, and the position the next number.
+/// The value of `--column` for columns without names: the time is a time since 1970 in the first row, or the column that
+/// rises most evenly, and the position the next number.
 fn numbered(layout: &Layout) -> String {
     let fields = layout.separator.split(&layout.first_row);
     let is_number = |place: usize| {
@@ -82,17 +82,19 @@ fn numbered(layout: &Layout) -> String {
             format!("{}:s+{}:{}", place + 1, place + 2, of_unit("ns")),
         ),
         Some((place, unit)) => (*place, format!("{}:{unit}", place + 1)),
-        None if is_number(0) => (0, format!("1:{}", of_unit("s"))),
         // A date has no unit.
-        None => (0, "1".to_owned()),
+        None if layout.moments.contains(&0) => (0, "1".to_owned()),
+        None => {
+            let place = seen::time(&layout.seen).unwrap_or(0);
+            let unit = of_unit(guessed_unit(layout, Quantity::Time, place));
+            (place, format!("{}:{unit}", place + 1))
+        }
     };
     last = (last + 1..layout.names.len())
+        .chain(0..last)
         .find(|place| is_number(*place))
         .unwrap_or(last + 1);
-    let unit = match layout.fractional.contains(&last) {
-        true => of_unit(ANGLE),
-        false => of_unit(example(Quantity::Position)),
-    };
+    let unit = of_unit(guessed_unit(layout, Quantity::Position, last));
     let position = last + 1;
     format!(
         "t={time},counts_large={position}:{unit}{}",

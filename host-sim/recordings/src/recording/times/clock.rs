@@ -85,7 +85,7 @@ impl Uneven {
 }
 
 /// Rows a second above which a unit of the time is more likely wrong: those of the fastest control loop.
-const FASTEST_HZ: f64 = RATES_HZ.1;
+pub(crate) const FASTEST_HZ: f64 = RATES_HZ.1;
 
 /// What to check where the rows of a log come at `rate_hz`; `None` if the rate is one of a control loop.
 pub(crate) fn fast(rate_hz: f64) -> Option<String> {

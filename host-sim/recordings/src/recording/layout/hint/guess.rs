@@ -6,13 +6,18 @@ use super::super::header::short;
 use super::super::{Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
 use super::{LISTED, languages};
 use crate::recording::options::Column;
-use crate::recording::options::units::Quantity;
+use crate::recording::options::units::{Quantity, Unit};
+use crate::recording::times::clock::FASTEST_HZ;
+use crate::recording::times::steps::SLOWEST_HZ;
 
 /// Characters of the longest name that a hint repeats; a longer one is called by its number.
 const LONGEST: usize = 80;
 
-/// The unit of a position that has fractions, for an example.
-pub(super) const ANGLE: &str = "rad";
+/// The largest number of an angle that is taken for one in radians, three revolutions.
+const RADIANS: f64 = 20.0;
+
+/// The largest number of an angle that is taken for one in whole degrees.
+const DEGREES: f64 = 360.0;
 
 /// Parts of the names of what may be a position, and a time: more than say what they are.
 pub(super) fn positions() -> Vec<&'static str> {
@@ -249,11 +254,41 @@ fn is_beside(layout: &Layout, column: Column, place: usize) -> bool {
 
 /// A unit for the column at `place`, of which no name and no number tells it.
 pub(crate) fn guessed_unit(layout: &Layout, quantity: Quantity, place: usize) -> &'static str {
-    let is_angle = quantity == Quantity::Position && layout.fractional.contains(&place);
-    in_language(layout, quantity, place).unwrap_or(match is_angle {
-        true => ANGLE,
-        false => example(quantity),
-    })
+    let by_numbers = || match quantity {
+        Quantity::Time => time_unit(layout.seen.get(place)?.step?),
+        Quantity::Position => angle_unit(layout, place),
+        _ => None,
+    };
+    in_language(layout, quantity, place)
+        .or_else(by_numbers)
+        .unwrap_or(example(quantity))
+}
+
+/// The largest unit in which times `step` apart are those of a recording.
+fn time_unit(step: f64) -> Option<&'static str> {
+    let mut units = Quantity::Time.units().iter();
+    let fits = |unit: &&Unit| {
+        let per_s = unit.per_s();
+        per_s >= 1.0 && (SLOWEST_HZ..=FASTEST_HZ).contains(&(per_s / step))
+    };
+    units.find(fits).map(Unit::name)
+}
+
+/// The unit of an angle by its numbers: fractions, and whole numbers up to a turn with the name of an angle. `None` for
+/// a count.
+fn angle_unit(layout: &Layout, place: usize) -> Option<&'static str> {
+    let name = &layout.names[place];
+    let is_fractional = layout.fractional.contains(&place);
+    let largest = layout.seen.get(place).map_or(0.0, |seen| seen.largest);
+    match is_fractional {
+        true if has(name, &["turn", "odrive"]) => Some("rev"),
+        true if largest > RADIANS => Some("deg"),
+        true => Some("rad"),
+        false => {
+            let is_within_a_turn = (RADIANS..=DEGREES).contains(&largest);
+            (has(name, &["angle", "theta"]) && is_within_a_turn).then_some("deg")
+        }
+    }
 }
 
 /// The unit of a position that has the name of one of a known log.

@@ -1,5 +1,7 @@
 //! Tests of the options that errors name.
 
+mod numbers;
+
 use crate::recording::{read_log as read, read_log_at as read_at};
 
 #[test]
