@@ -125,6 +125,27 @@ fn the_first_cause_is_latched() {
     }
 }
 
+/// Two faults, one of which is found at the end of a slot and the other one in its tick: whichever comes first is the
+/// cause.
+#[test]
+fn cause_stays_when_another_fault_follows() {
+    let fast = |k: u32| sample(0, 9 * k, 0.0);
+    let jumps = |k: u32| sample(2000 * (k % 2), 0, 0.0);
+    let faults: [(&dyn Fn(u32) -> Sample, Stop); 2] =
+        [(&fast, Stop::HandleOverspeed), (&jumps, Stop::Jump)];
+    for (i, (motion, stop)) in faults.into_iter().enumerate() {
+        let mut state = MONITOR.start(&motion(0));
+        for k in 1..=60 {
+            MONITOR.check(&mut state, &motion(k));
+        }
+        assert_eq!(state.cause(), Some(stop));
+        let other = faults[1 - i].0;
+        for k in 61..200 {
+            assert_eq!(MONITOR.check(&mut state, &other(k)), Some(stop), "{k}");
+        }
+    }
+}
+
 #[test]
 fn outputs_are_within_the_limits_for_every_input() {
     let limits = CurrentLimits {

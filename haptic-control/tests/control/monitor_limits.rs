@@ -119,6 +119,16 @@ fn stall_is_detected_beyond_its_limits_of_current_and_time() {
     }
 }
 
+/// Not only where the motor was when the monitor began.
+#[test]
+fn stall_is_detected_where_a_motor_that_turned_comes_to_rest() {
+    for sign in [1, -1] {
+        // A count in each tick until the slot that ends with tick 510, and 21 slots of rest.
+        let jams = |k: i32| sample(sign * k.min(505), 0, sign as f32 * 600.0);
+        assert_eq!(first(2000, jams), Some((510 + 210, Stop::Stall)));
+    }
+}
+
 /// A motion of the large motor that goes on by `before` counts in one window of five slots and by
 /// `after` in the next one, against the push and again at the end of every slot.
 fn two_windows(before: i32, after: i32) -> impl Fn(i32) -> i32 {
