@@ -285,6 +285,30 @@ fn silence_that_disarms_may_be_shorter_than_that_of_a_scene() {
     );
 }
 
+/// A missed tick, after which each tick is looked at for a while, does not bring the limit of an armed device forward.
+#[test]
+fn scene_outlasts_the_silence_that_disarms() {
+    let safety = Safety {
+        silence: Some(100),
+        disarm: Some(30),
+        ..SAFETY
+    };
+    for missed_at in [None, Some(50)] {
+        let mut state = settled(&safety);
+        safety.tick(&mut state, &WELL, Some(Request::Select(2)));
+        let silent = (0..1000).take_while(|tick| {
+            let missed = u32::from(missed_at == Some(*tick));
+            safety.tick(&mut state, &Findings { missed, ..WELL }, None);
+            state.mode() == Mode::Running
+        });
+        assert_eq!(silent.count(), 100, "{missed_at:?}");
+        let off = (Mode::Armed, Stop::CommandTimeout);
+        assert_eq!((state.mode(), state.stop()), off);
+        // An armed device has been silent for too long already.
+        assert_eq!(safety.tick(&mut state, &WELL, None), RESTARTED);
+    }
+}
+
 /// What ends the calm ticks is not a command: the silence is as long as without it.
 #[test]
 fn end_of_the_calm_ticks_does_not_change_the_silence() {
