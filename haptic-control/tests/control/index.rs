@@ -265,6 +265,17 @@ fn restart_without_a_finding_keeps_the_reference() {
     assert_eq!(shaft.found, Some(Stop::LostCounts));
 }
 
+/// The zero is known from the first pulse on, without a whole turn.
+#[test]
+fn first_pulse_gives_the_position() {
+    for motor in &MOTORS {
+        let mut shaft = Shaft::new(motor, -10, 1 << 20);
+        let position = |shaft: &Shaft| shaft.state.position(shaft.count(shaft.at), Counts(7));
+        assert_eq!(position(shaft.to(-1)), None);
+        assert_eq!(position(shaft.to(25)), Some(Counts(25 - 7)));
+    }
+}
+
 #[test]
 fn position_counts_from_the_first_pulse_and_its_offset() {
     for zero in [0, 1 << 31, u32::MAX.into()] {
