@@ -181,6 +181,16 @@ fn setting_a_parameter_changes_no_other() {
     assert_eq!(SCENES[11].tuned(1, 1e-3, &BOUNDS), Ok(friction(4e-3, 1e-3)));
 }
 
+/// A frequency that no f32 has, so that its own value would set another one.
+#[test]
+fn amplitude_of_a_texture_leaves_its_frequency_to_the_last_bit() {
+    let texture = |amplitude| {
+        let hertz = Hertz(100.0 + std::f64::consts::PI);
+        AnyScene::Texture(Texture::new(amplitude, hertz, RATE).unwrap())
+    };
+    assert_eq!(texture(1e-3).tuned(0, 2e-3, &BOUNDS), Ok(texture(2e-3)));
+}
+
 #[test]
 fn parameters_beyond_the_device_are_refused() {
     let gain = [-1e-9, 1e9];
