@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use haptic_control::{LoopPoles, RadPerS, Rst, RstDesign};
+use haptic_control::{DualStage, LoopPoles, RadPerS, Rst, RstDesign};
 
 use crate::design::{RATES, design};
 
@@ -177,5 +177,24 @@ fn limited_law_agrees_with_its_difference_equation() {
             cut = [f64::from(applied) - (forward + regulated), cut[0], cut[1]];
         }
         assert!((200..1900).contains(&limited), "{rate}: {limited}");
+    }
+}
+
+/// Of a motor at a constant velocity against a coupler that is held, from the first tick on.
+#[test]
+fn loop_that_starts_at_a_velocity_commands_the_current_of_this_velocity() {
+    let device = DualStage::DEFAULT;
+    for rate in RATES {
+        let rst = Rst::new(&design(rate));
+        for speed in [-100.0_f32, 20.0] {
+            let mut state = rst.start(RadPerS(speed));
+            let wanted = f64::from(speed) * device.damping / device.large.torque_constant;
+            for tick in 0..5 {
+                let asked = rst.update(&mut state, RadPerS(speed), RadPerS(speed));
+                // Sums of f32 at 100 rad/s, times coefficients of up to 1 A per rad/s.
+                let off = (f64::from(asked) - wanted).abs();
+                assert!(off < 1e-3, "{rate} Hz, {tick}: {asked} A, {wanted} A");
+            }
+        }
     }
 }
