@@ -68,6 +68,15 @@ fn needs_agree_with_the_types() {
     assert!(free.eq(without_spring));
 }
 
+/// Also where the small motor alone renders: a device whose signs nobody has verified must not run these.
+#[test]
+fn all_scenes_but_off_and_the_excitation_are_closed_loops() {
+    let open = SceneKind::ALL
+        .into_iter()
+        .filter(|kind| !kind.is_closed_loop());
+    assert!(open.eq([SceneKind::Off, SceneKind::Excite]));
+}
+
 /// The bounds of a scene's parameters, with their numbers.
 fn ranges(scene: &AnyScene) -> impl Iterator<Item = (u8, [f32; 2])> {
     let parameters = scene.kind().facts().parameters;
