@@ -165,7 +165,7 @@ fn friction_is_fed_forward_in_the_direction_of_the_handle() {
 /// What is compensated at each tick of a motion with reversals, quick and slow ones, against the formulas in f64.
 #[test]
 fn compensation_follows_the_time_since_the_last_reversal() {
-    for rate in [Hertz(1e3), Hertz(10e3)] {
+    for rate in [Hertz(1e3), Hertz(10e3), Hertz(11.6e3)] {
         let rig = Rig::new(&DEVICE, rate, LoopPoles::DEFAULT).unwrap();
         let period_ms = 1e3 / rate.0;
         let gain = 1.0 - (-std::f64::consts::TAU * 60.0 / rate.0 / 2.0).exp();
@@ -381,6 +381,28 @@ fn device_constants_must_be_finite_and_positive_and_friction_not_negative() {
     device = DEVICE;
     device.small.counts_per_rev = 0;
     assert_eq!(device.checked(), refused);
+}
+
+/// A recording is that of the device with its constants and of no other one.
+#[test]
+fn fingerprint_depends_on_every_constant() {
+    let mut devices = vec![DEVICE];
+    for set in CONSTANTS {
+        let mut device = DEVICE;
+        set(&mut device, 0.123);
+        devices.push(device);
+    }
+    for (large, small) in [(1, 0), (0, 1)] {
+        let mut device = DEVICE;
+        device.large.counts_per_rev += large;
+        device.small.counts_per_rev += small;
+        devices.push(device);
+    }
+    for (i, device) in devices.iter().enumerate() {
+        for other in &devices[i + 1..] {
+            assert_ne!(device.fingerprint(), other.fingerprint(), "{other:?}");
+        }
+    }
 }
 
 #[test]
