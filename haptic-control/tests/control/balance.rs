@@ -244,7 +244,8 @@ fn current_that_grows_may_be_late() {
     // The middle of the first two windows, which begin half a millisecond and a tick after the start.
     let middle = 6e-4 + WINDOW_S;
     for sign in [1.0, -1.0] {
-        for (part, found) in [(0.5, false), (1.5, true)] {
+        // The sums take the current at the end of each tick: half a tick later, a fifth of this time.
+        for (part, found) in [(0.7, false), (1.1, true)] {
             let turn = |t: f64| sign * EVEN * t;
             let amps = |t: f64| sign * (largest + slope * (t - middle + part * late_s));
             let at = found_s(10e3, 0.0022 + 2.0 * WINDOW_S, turn, turn, amps);
