@@ -2,9 +2,12 @@
 
 mod common;
 
-use common::devtools::Browser;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use common::devtools::{Browser, Tab};
 use common::page::{drag, page, run_scene, select};
-use common::{ATTEMPTS, Server, is_stalled};
+use common::{ATTEMPTS, Server, is_stalled, scratch};
 use serde_json::json;
 
 #[test]
@@ -194,5 +197,169 @@ fn dark_page_has_dark_plots() {
         "scope.plots.plots[0].plot.axes[0].stroke() === '#9aa6b0'",
     );
     browser.picture(&tab, "dark.png");
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+/// A page that plays a recording of a minute, which needs no board; `None` without a browser.
+fn recorded() -> Option<(Server, Browser, Tab)> {
+    // Written once for all tests of this process.
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    let path = PATH.get_or_init(|| {
+        let path = scratch("played.csv");
+        let rows = (0..12_000).map(|k| format!("{:.3},{}\n", f64::from(k) / 200.0, k / 3));
+        let text = format!("t,counts_large\n{}", rows.collect::<String>());
+        std::fs::write(&path, text).expect("a file in the folder of the build");
+        path
+    });
+    let server = Server::start(&["--recording", path.to_str().expect("a path in UTF-8")]);
+    let mut browser = Browser::start()?;
+    let tab = browser.open(&server.url(), 1300, 900);
+    browser.wait(&tab, "scope.status?.plays && scope.frames > 2");
+    Some((server, browser, tab))
+}
+
+#[test]
+fn recording_is_paused_and_sought_and_plots_are_held() {
+    let Some((_server, mut browser, tab)) = recorded() else {
+        return;
+    };
+    browser.click(&tab, "#pause");
+    browser.value(&tab, "window.held = scope.plots.shown[1], 0");
+    browser.wait(
+        &tab,
+        "scope.store.end > window.held + 0.3 && scope.plots.shown[1] === window.held && $('pause').textContent === 'Follow'",
+    );
+    browser.click(&tab, "#pause");
+    browser.wait(&tab, "scope.plots.shown[1] === scope.store.end");
+
+    // Before its end, at which it does not play either.
+    browser.click(&tab, "#play");
+    browser.wait(
+        &tab,
+        "!scope.status.plays && scope.status.t < 50 && $('play').textContent === 'Play'",
+    );
+    browser.value(&tab, "$('seek').value = 12, $('seek').oninput(), 0");
+    browser.wait(
+        &tab,
+        "Math.abs(scope.status.t - 12) < 0.1 && /^1[12]\\.\\d\\d s$/.test($('at').textContent)",
+    );
+    browser.click(&tab, "#play");
+    browser.wait(
+        &tab,
+        "scope.status.plays && scope.status.t > 12.2 && $('play').textContent === 'Pause'",
+    );
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+/// Of rows that are made for the test: a row each millisecond of a store of one channel beside the time.
+#[test]
+fn curve_has_its_peaks_in_their_order_and_rows_that_are_missing_are_counted() {
+    let Some((_server, mut browser, tab)) = recorded() else {
+        return;
+    };
+    browser.value(
+        &tab,
+        "(() => { window.made = new Store([{ name: 't' }, { name: 'x' }], [], 0.01); \
+         window.take = (epoch, first, rows) => { const buffer = new ArrayBuffer(16 + 16 * rows.length), head = new DataView(buffer); \
+         head.setUint32(0, rows.length, true); head.setUint32(4, epoch, true); head.setFloat64(8, first, true); \
+         new Float64Array(buffer, 16).set(rows.flat()); made.take(buffer); }; \
+         const peaks = { 417: 5, 421: -7, 803: -3, 805: 4 }; \
+         take(1, 0, Array.from({ length: 1000 }, (_, k) => [k / 1000, peaks[k] ?? 0])); })()",
+    );
+    // Ten buckets of a hundred rows: one has its highest value first, one its lowest.
+    let peaks = browser.value(
+        &tab,
+        "made.decimate([(k) => made.values[1][k]], 0, 1, 10)[1].filter((x) => x !== 0)",
+    );
+    assert_eq!(peaks, json!([5, -7, -3, 4]));
+    // Rows 1000 to 1011 did not come.
+    let state = "[made.count, made.lost, made.latest('x')]";
+    browser.value(&tab, "take(1, 1012, [[1.012, 2]]), 0");
+    assert_eq!(browser.value(&tab, state), json!([1001, 12, 2]));
+    // Another board begins, whose rows have other numbers.
+    browser.value(&tab, "take(2, 7000, [[7, 9]]), 0");
+    assert_eq!(browser.value(&tab, state), json!([1, 12, 9]));
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+/// Of a row that is made for the test: the motor turns at -20 rad/s, and the estimate is 1 rad/s off.
+#[test]
+fn plots_and_words_are_those_of_the_interval_and_of_the_threshold() {
+    let Some((_server, mut browser, tab)) = recorded() else {
+        return;
+    };
+    let list = browser.value(
+        &tab,
+        "(() => { const s = scope.store, set = (name, value) => { s.values[s.column[name]][(s.count - 1) % KEPT] = value; }; \
+         set('true_omega', -20); set('velocity_large', -19); \
+         const of = (id, label) => plotList(scope.facts, s, new Map()).find((plot) => plot.id === id).series \
+         .filter((line) => line.label === label).map((line) => line.get((s.count - 1) % KEPT)); \
+         const words = [9, -9, 11, -11].map((force) => { set('parasitic', force); showNumbers(s, scope.controls); \
+         return /below|above/.exec($('felt-words').textContent)[0]; }); \
+         return { high: of('velocity', 'interval'), low: of('velocity', ''), error: of('error', 'in charge'), \
+         words }; })()",
+    );
+    let series = |name: &str| list[name][0].as_f64().expect("a series");
+    // A damping of 0.96 mN·m·s/rad at a radius of 35 mm; 10 mN and 5 % of the velocity are not noticed.
+    let force = 0.96 / 0.035;
+    let width = 0.05 * 20.0 + 10.0 / force;
+    for (found, wanted) in [
+        (series("high"), -20.0 + width),
+        (series("low"), -20.0 - width),
+        (series("error"), force),
+    ] {
+        assert!((found - wanted).abs() < 1e-4, "{found} {wanted}");
+    }
+    assert_eq!(list["words"], json!(["below", "below", "above", "above"]));
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+/// The angles of the hand, as they would be sent to a board.
+#[test]
+fn hand_follows_the_pointer_through_whole_turns_and_steps_of_keys_add_up() {
+    let Some((_server, mut browser, tab)) = recorded() else {
+        return;
+    };
+    browser.value(
+        &tab,
+        "scope.view.enabled = true, scope.view.send = (order) => { window.sent = order; }, 0",
+    );
+    let place = browser.value(
+        &tab,
+        "(() => { const b = $('device').getBoundingClientRect(), g = scope.view.geometry(); return [b.left + g.x, b.top + g.y, g.radius]; })()",
+    );
+    let [x, y, radius] = [0, 1, 2].map(|k| place[k].as_f64().expect("a number"));
+    let point = |browser: &mut Browser, kind: &str, angle: f64| {
+        let (px, py) = (x + radius * angle.sin(), y - radius * angle.cos());
+        browser.mouse(&tab, kind, px, py);
+        browser.value(&tab, "scope.view.target").as_f64()
+    };
+    let start = point(&mut browser, "mousePressed", 2.5).expect("the hand takes hold");
+    // Twice over the bottom, where the angle of the pointer goes round; to and fro.
+    for turned in (1..=20).chain((0..20).rev()).map(|k| 0.5 * f64::from(k)) {
+        let angle = point(&mut browser, "mouseMoved", 2.5 + turned).expect("an angle");
+        // A pixel of some 100.
+        assert!((angle - start - turned).abs() < 0.03, "{turned}: {angle}");
+    }
+    assert_eq!(point(&mut browser, "mouseReleased", 2.5), None);
+    browser.wait(&tab, "window.sent.do === 'hand' && window.sent.at === null");
+
+    browser.value(&tab, "$('device').focus(), scope.view.move(0.5), 0");
+    for (key, angle) in [
+        ("ArrowRight", 0.52),
+        ("ArrowRight", 0.54),
+        ("ArrowUp", 0.56),
+        ("ArrowLeft", 0.54),
+        ("ArrowDown", 0.52),
+    ] {
+        browser.key(&tab, key);
+        let target = browser.value(&tab, "scope.view.target").as_f64();
+        let off = target.map(|target| (target - angle).abs());
+        assert!(off.is_some_and(|off| off < 1e-9), "{key}: {target:?}");
+    }
+    // Who goes on to another control lets go.
+    browser.value(&tab, "$('device').blur(), 0");
+    assert_eq!(browser.value(&tab, "scope.view.target"), json!(null));
+    browser.wait(&tab, "window.sent.at === null");
     assert_eq!(browser.complaints, [""; 0]);
 }
