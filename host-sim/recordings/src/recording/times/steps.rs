@@ -22,6 +22,9 @@ const IRREGULAR_SHARE: f64 = 0.1;
 /// Relative difference of two steps of the same length, which floats round.
 const SAME: f64 = 1e-3;
 
+/// Largest share of the steps that may differ from the period where rows are taken as even.
+const RARE: f64 = 1e-3;
+
 /// Longest step from a row to the next, and over a few missing rows, in periods.
 const NEXT: f64 = 1.5;
 const FEW: f64 = 20.0;
@@ -157,13 +160,22 @@ impl Steps {
         Ok((period, rate_hz))
     }
 
-    /// Whether rows of this `period`, s, come at uneven times: a step differs from it by more than a
-    /// tenth, and the resolution of `t` does not explain the difference.
+    /// Whether rows of this `period`, s, come at uneven times: a step over missing rows, or one of 1000 differs from it by
+    /// more than a tenth, and the resolution of `t` does not explain the difference.
     pub(crate) fn are_uneven(&self, period: f64) -> bool {
         let resolution = self.resolution(period).unwrap_or(0.0);
         let explained = (1.0 - SAME) * resolution;
-        let mut ends = self.classes().flat_map(|class| [class.least, class.most]);
-        ends.any(|step| differs(step, period) > EVEN && (step - period).abs() >= explained)
+        let is_off =
+            |step: &f64| differs(*step, period) > EVEN && (step - period).abs() >= explained;
+        let off = self.classes().filter_map(|class| {
+            let most = [class.least, class.most].into_iter().filter(is_off);
+            Some((most.reduce(f64::max)?, class.number))
+        });
+        let (longest, number) = off
+            .fold((0.0, 0), |(longest, number): (f64, u64), (step, more)| {
+                (longest.max(step), number + more)
+            });
+        longest > NEXT * period || number as f64 > RARE * self.number as f64
     }
 
     /// Mean length and number of the steps of each class.
@@ -273,5 +285,8 @@ mod tests {
         // Rows 1.1 ms apart, whose times are rounded to a quarter of a millisecond.
         assert!(!uneven_from(1.1, &[1.0, 1.0, 1.25, 1.0, 1.25]));
         assert!(uneven_from(1.1, &[1.0, 1.0, 1.25, 1.0, 1.5]));
+        // A late row among a thousand, two, and a missing one.
+        let with = |others: &[f64]| are_uneven(&[&[1.0; 1500], others].concat());
+        assert!(!with(&[1.4]) && !with(&[0.3]) && with(&[1.4, 0.6]) && with(&[2.0]));
     }
 }
