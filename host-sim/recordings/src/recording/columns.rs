@@ -2,6 +2,7 @@
 
 mod checked;
 pub(super) mod currents;
+mod left_out;
 pub(super) mod stamps;
 
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
@@ -15,8 +16,6 @@ use super::layout::{Layout, Place, Places};
 use super::options::units::WRAP;
 use super::options::{Column, ReadOptions};
 use super::records::Records;
-use super::records::named_fields::Mark;
-use super::text::fields::is_without_value;
 use super::text::lines::LineNumbers;
 use super::text::row::Row;
 use super::text::thousands::Thousands;
@@ -25,6 +24,7 @@ use super::times::jitter::Jitter;
 use super::times::own_times::OwnTimes;
 use super::times::{self, Repeated, Replaced};
 use currents::Current;
+use left_out::LeftOut;
 use stamps::{Stamp, Stamps};
 
 /// Columns whose numbers may have separators of thousands.
@@ -58,9 +58,9 @@ pub(super) struct Columns<'a> {
     true_omega: Vec<f64>,
     /// The board's columns, if they are read too.
     board: Option<Board>,
-    /// Number of rows left out, and line of the first.
-    left_out: usize,
-    first_left_out: u64,
+    /// Rows of other signals, and lines that are no rows.
+    of_others: LeftOut,
+    messages: LeftOut,
     /// Line of the last row, if it may be cut.
     cut: Option<u64>,
 }
@@ -90,8 +90,8 @@ impl<'a> Columns<'a> {
             stamps: Stamps::default(),
             true_omega: Vec::new(),
             board,
-            left_out: 0,
-            first_left_out: 0,
+            of_others: LeftOut::default(),
+            messages: LeftOut::default(),
             cut: None,
         }
     }
@@ -117,11 +117,12 @@ impl<'a> Columns<'a> {
             self.cut = Some(row.line);
             return Ok(());
         }
+        if row.is_message() {
+            self.messages.add(row.line);
+            return Ok(());
+        }
         if self.is_of_others(row)? {
-            if self.left_out == 0 {
-                self.first_left_out = row.line;
-            }
-            self.left_out += 1;
+            self.of_others.add(row.line);
             return Ok(());
         }
         let marked = MARKED.iter().zip(&mut self.thousands);
@@ -188,26 +189,6 @@ impl<'a> Columns<'a> {
             Some(board) => board.take(row),
             None => Ok(()),
         }
-    }
-
-    /// Whether a row has its time and no position, and is one of other signals: in some logs each row has the signals that
-    /// changed. A row of fields with names has the value of one of them; in one with separators all fields are there.
-    fn is_of_others(&self, row: &Row) -> Result<bool, Failure> {
-        let [Some(time), Some(position)] =
-            [Column::T, Column::CountsLarge].map(|column| self.place(column))
-        else {
-            return Ok(false);
-        };
-        let has = |place: Place| -> Result<bool, Failure> {
-            let is_new = row.marks.get(place.place) != Some(&Mark::Held);
-            let text = row.text(place.column.name(), place.place)?;
-            Ok(is_new && !is_without_value(text))
-        };
-        let others = || match row.marks {
-            [] => row.record.len() > 2,
-            _ => row.has_value(|place| ![time.place, position.place].contains(&place)),
-        };
-        Ok(!has(position)? && has(time)? && others())
     }
 
     fn time(&mut self, row: &Row) -> Result<f64, Failure> {

@@ -97,7 +97,10 @@ impl<'a> Records<'a> {
             };
             (layout, Source::Json(Json::new(input, end, &begin)))
         } else if let Some(begin) = labelled::Begin::of(&text) {
-            let layout = named(&begin.names, begin.line);
+            let layout = Layout {
+                moments: begin.moments(),
+                ..named(&begin.names, begin.line)
+            };
             (layout, Source::Labelled(Labelled::new(input, end, &begin)))
         } else if let Some(begin) = long::Begin::of(&text, options) {
             let layout = begin.layout.clone();

@@ -71,6 +71,12 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("simplefoc-monitor-all.txt", "--row-rate 1000"),
     ("serial-monitor-times.txt", "--row-rate 1000"),
     ("serial-plotter.txt", ""),
+    ("python-logging.log", ""),
+    ("labelled-with-messages.txt", ""),
+    (
+        "messages-of-other-topics.csv",
+        "--column t=/joint_states/header/stamp:s,counts_large=/joint_states/handle/position:rad",
+    ),
     ("plotjuggler.csv", ""),
     ("labview.lvm", ""),
     (

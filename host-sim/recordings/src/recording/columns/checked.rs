@@ -44,12 +44,8 @@ impl Columns<'_> {
             notes.extend(self.own_times.floats.note());
         }
         notes.extend(repeated);
-        if self.left_out > 0 {
-            notes.push(format!(
-                "{} rows without a position are left out, the first in line {}",
-                self.left_out, self.first_left_out
-            ));
-        }
+        notes.extend(self.of_others.of_others());
+        notes.extend(self.messages.messages());
         if let Some(line) = self.cut {
             notes.push(format!(
                 "line {line}, the last one, has no end and is left out: its last number may be cut"

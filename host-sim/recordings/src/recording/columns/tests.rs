@@ -85,3 +85,47 @@ fn rows_of_other_signals_are_left_out() {
         assert!(error.contains(said), "{error}");
     }
 }
+
+#[test]
+fn rows_with_another_time_and_no_position_are_left_out() {
+    let row = |k: usize| format!("0.{k}1,,0.{k},{}\n0.{k}5,9.81,,\n", 8 * k);
+    let rows: String = (0..9).map(row).collect();
+    let text = format!("received,imu,stamp,encoder\n{rows}");
+    let recording = read(&text, "t=stamp:s,counts_large=encoder:counts").unwrap();
+    assert_eq!(recording.trace.counts_large[..3], [0, 8, 16]);
+    assert_eq!(recording.t.len(), 9);
+    let said = "9 rows without a position are left out, the first in line 3";
+    assert!(recording.notes.iter().any(|note| note == said));
+}
+
+#[test]
+fn lines_without_the_names_of_the_rows_are_left_out() {
+    let row = |k: usize| format!("time_ms: {k} counts: {}\n", 3 * k);
+    let [above, below] = [0..9, 9..30].map(|rows| rows.map(row).collect::<String>());
+    let notes = |between: &str| {
+        let recording = read(&format!("{above}{between}{below}"), "").unwrap();
+        assert_eq!(recording.trace.counts_large[8..10], [24, 27], "{between}");
+        assert_eq!(recording.t.len(), 30);
+        let lines = recording.notes.into_iter();
+        lines
+            .filter(|note| note.contains("names and"))
+            .collect::<Vec<_>>()
+    };
+    let one = "line 10 has none of the names and is left out";
+    for line in [
+        "DONE",
+        "speed: 100, step: 0.5",
+        "runtime_ms: 5",
+        "next counts",
+        "0.5 0.7",
+    ] {
+        assert_eq!(notes(&format!("{line}\n")), [one], "{line}");
+    }
+    let two = "2 lines have none of the names and are left out, the first is line 11";
+    assert_eq!(notes("\nspeed: 100 step: 0.5\nDONE\n"), [two]);
+    // A row that is broken.
+    for line in ["time_ms: 9", "9 counts: ", "time_ms = 9 counts 27"] {
+        let error = read(&format!("{above}{line}\n{below}"), "").unwrap_err();
+        assert!(error.starts_with("r.csv: line 10: "), "{line}: {error}");
+    }
+}

@@ -1,5 +1,7 @@
 //! Rows that name their numbers, as a serial plotter reads them: `angle:1.5,velocity:2`.
 
+mod logged;
+
 use std::io::BufRead;
 
 use csv::ByteRecord;
@@ -39,6 +41,12 @@ impl Begin {
         }
         None
     }
+
+    /// Places of the columns that have a date or a time of day.
+    pub(super) fn moments(&self) -> Vec<usize> {
+        let places = self.names.iter().position(|name| name == logged::NAME);
+        places.into_iter().collect()
+    }
 }
 
 /// Reads rows with names, one a line.
@@ -48,6 +56,22 @@ pub(super) struct Labelled<R> {
     /// Line of the first row.
     first: u64,
     pub(super) places: Places,
+}
+
+impl Places {
+    /// Whether one of these fields has a name of the columns, but for the time before a row.
+    fn have_one_of(&self, fields: &[Field]) -> bool {
+        let is_of_columns = |field: &Field| field.name != logged::NAME && self.has(&field.name);
+        fields.iter().any(is_of_columns)
+    }
+
+    /// Whether one of the names stands in `text`, with the mark behind it that its number follows.
+    fn are_called_in(&self, text: &str) -> bool {
+        let mut before = text
+            .match_indices([':', '='])
+            .map(|(at, _)| text[..at].trim_end());
+        before.any(|before| self.names().any(|name| is_last_word(before, name)))
+    }
 }
 
 impl<R: BufRead> Labelled<R> {
@@ -65,7 +89,7 @@ impl<R: BufRead> Labelled<R> {
         self.inner.cut() == Some(line)
     }
 
-    /// Reads the next row into `record` and returns its line.
+    /// Reads the next row into `record` and returns its line. A line without any of the names has no fields.
     pub(super) fn read(
         &mut self,
         record: &mut ByteRecord,
@@ -78,11 +102,16 @@ impl<R: BufRead> Labelled<R> {
             if line < self.first {
                 continue;
             }
-            let Some(fields) = fields(bare(&self.text)) else {
-                return Err(Failure::Input(format!(
-                    "{name}: line {line}: not each number has a name before it, as in line {}; remove the line",
-                    self.first
-                )));
+            let text = bare(&self.text);
+            let fields = match fields(text) {
+                Some(fields) if self.places.have_one_of(&fields) => fields,
+                None if self.places.are_called_in(&String::from_utf8_lossy(text)) => {
+                    return Err(Failure::Input(format!(
+                        "{name}: line {line}: not each number has a name before it, as in line {}; remove the line",
+                        self.first
+                    )));
+                }
+                _ => Vec::new(),
             };
             self.places.take(fields, record);
             return Ok(Some(line));
@@ -90,9 +119,14 @@ impl<R: BufRead> Labelled<R> {
     }
 }
 
-/// The fields of a row of names and numbers; `None` for another line.
+/// The fields of a row of names and numbers, which may be behind a time; `None` for another line.
 fn fields(line: &[u8]) -> Option<Vec<Field>> {
-    let mut rest = std::str::from_utf8(line).ok()?.trim();
+    let line = std::str::from_utf8(line).ok()?.trim();
+    named(line).or_else(|| logged::fields(line, named))
+}
+
+/// The fields of a row of names and numbers alone.
+fn named(mut rest: &str) -> Option<Vec<Field>> {
     let mut fields = Vec::new();
     while !rest.is_empty() {
         let (name, after) = rest.split_once([':', '='])?;
@@ -113,6 +147,13 @@ fn fields(line: &[u8]) -> Option<Vec<Field>> {
         rest = after;
     }
     (!fields.is_empty()).then_some(fields)
+}
+
+/// Whether a text ends with a name, which may have its unit in brackets behind it.
+fn is_last_word(text: &str, name: &str) -> bool {
+    let name = name.split(" [").next().unwrap_or_default();
+    let before = text.strip_suffix(name);
+    before.is_some_and(|before| !before.ends_with(char::is_alphanumeric))
 }
 
 /// Whether a field of a row is a name and its number.

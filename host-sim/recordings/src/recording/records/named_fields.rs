@@ -54,6 +54,15 @@ impl Places {
         }
     }
 
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
+    /// Whether `name` has a place.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.places.contains_key(name)
+    }
+
     /// Writes the fields of a row into `record`, each to the place of its name. Fields of other names are
     /// left out.
     pub(crate) fn take(&mut self, fields: Vec<Field>, record: &mut ByteRecord) {

@@ -52,13 +52,19 @@ impl Row<'_> {
         self.is_cut && (has_names || places.any(|place| place + 1 >= self.record.len()))
     }
 
-    /// Whether a column with a place that `is_meant` has a value.
-    pub(crate) fn has_value(&self, is_meant: impl Fn(usize) -> bool) -> bool {
+    /// Whether a line is none of the rows, whose fields have names: it has none of them.
+    pub(crate) fn is_message(&self) -> bool {
+        !self.marks.is_empty() && self.marks.iter().all(|mark| *mark == Mark::Missing)
+    }
+
+    /// Number of the columns with a place that `is_meant` that have a value.
+    pub(crate) fn values(&self, is_meant: impl Fn(usize) -> bool) -> usize {
         let is_value = |field: &[u8]| {
             !std::str::from_utf8(field).is_ok_and(|text| is_without_value(text.trim()))
         };
-        let mut fields = self.record.iter().enumerate();
-        fields.any(|(place, field)| is_meant(place) && is_value(field))
+        let fields = self.record.iter().enumerate();
+        let meant = fields.filter(|(place, field)| is_meant(*place) && is_value(field));
+        meant.count()
     }
 
     pub(crate) fn number(&self, column: &str, place: usize) -> Result<f64, Failure> {
