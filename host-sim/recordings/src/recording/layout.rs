@@ -21,14 +21,14 @@ use terminal::failure::Failure;
 use crate::log::HEAD;
 
 use super::options::{Column, Mapping, ReadOptions};
+use super::text::row_ends;
 use super::text::separator::{Separator, comment, stamp};
 use endings::Ending;
 use formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 pub(super) use places::{Part, Place, Places};
-pub(super) use search::{UNKNOWN, is_fraction, is_number, unit_since_1970};
+pub(super) use search::{UNKNOWN, is_fraction, is_number, numbers, unit_since_1970};
 use search::{
-    fractional, is_content, moments, named, numbers, probable, since_1970, two_levels,
-    without_value,
+    fractional, is_content, moments, named, probable, since_1970, two_levels, without_value,
 };
 use seen::Seen;
 use unit_row::UnitRow;
@@ -75,6 +75,8 @@ pub(super) struct Layout {
     pub(super) is_stamped: bool,
     /// Whether a row may end with a remark, which is not read.
     pub(super) remarks: bool,
+    /// Whether a separator of its own ends each row, as in `1,2;`.
+    pub(super) has_row_ends: bool,
     /// The rate of rows without a time as the text states it, Hz.
     pub(super) row_rate_hz: Option<f64>,
     /// Whether --row-rate states the rate of the rows.
@@ -106,6 +108,10 @@ impl Layout {
     ) -> Result<Self, Failure> {
         let bare = head.lines().map(|line| &line[stamp(line.as_bytes())..]);
         let mut lines: Vec<_> = bare.take(SEARCHED + 1).collect();
+        let has_row_ends = row_ends::end(&lines);
+        if has_row_ends {
+            lines = lines.into_iter().map(row_ends::cut).collect();
+        }
         let limit = match (lines.len() > SEARCHED, is_cut) {
             (true, _) => Some(format!("{SEARCHED} lines")),
             (false, true) => Some(format!("{} KiB", HEAD >> 10)),
@@ -146,6 +152,7 @@ impl Layout {
         }
         layout.leave_out_cut_row(&lines);
         Ok(Self {
+            has_row_ends,
             has_rate: options.row_rate_hz.is_some(),
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
@@ -182,6 +189,7 @@ impl Layout {
             first_row: String::new(),
             is_stamped: false,
             remarks: false,
+            has_row_ends: false,
             row_rate_hz: None,
             has_rate: false,
             rows_above: None,

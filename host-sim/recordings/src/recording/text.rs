@@ -4,6 +4,7 @@ pub(super) mod fields;
 pub(super) mod lines;
 pub(super) mod prefixed;
 pub(super) mod row;
+pub(super) mod row_ends;
 pub(super) mod separator;
 pub(super) mod thousands;
 
@@ -43,7 +44,7 @@ impl<R: BufRead> Text<R> {
                 .has_headers(false)
                 .flexible(true)
                 .delimiter(layout.separator.byte())
-                .from_reader(Lines::new(inner, layout.separator, layout.skip, end)),
+                .from_reader(Lines::of(inner, layout, end)),
             separator: layout.separator,
             header: layout.line,
             first_row: layout.skip + 1,
@@ -71,7 +72,7 @@ impl<R: BufRead> Text<R> {
                 let line = line.unwrap_or_default();
                 Failure::Input(format!("{name}: {line}cannot read: {error}"))
             })?;
-            is_end = read && self.columns > 1 && record.len() == 1 && record[0] == *END_OF_FILE;
+            is_end = read && self.columns > 1 && record.len() == 1 && is_no_row(&record[0]);
         }
         // The reader is at the begin of the next line.
         let line = read.then(|| self.reader.position().line() - 1);
@@ -111,6 +112,12 @@ impl<R: BufRead> Text<R> {
             "{name}: line {line}: {fields} {noun} where {model} has {columns}; {remedy}{commas}"
         )
     }
+}
+
+/// Whether the only field of a line of a table is that of no row: the end of the file, or quotes around nothing, as Python
+/// writes a row of an empty text.
+fn is_no_row(field: &[u8]) -> bool {
+    field == END_OF_FILE || field.trim_ascii().is_empty()
 }
 
 /// Checks that the quotes of `record`, which ends in `line`, end near where they begin.

@@ -74,6 +74,19 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("python-logging.log", ""),
     ("labelled-with-messages.txt", ""),
     (
+        "rows-end-in-semicolon.csv",
+        "--column t=time,counts_large=position",
+    ),
+    (
+        "matrix.txt",
+        "--column|t=Time:s,counts_large=Encoder 1 Pos:counts",
+    ),
+    ("rows-of-nothing.csv", ""),
+    (
+        "prose-in-comment.txt",
+        "--column t=1:s,counts_large=2:counts",
+    ),
+    (
         "messages-of-other-topics.csv",
         "--column t=/joint_states/header/stamp:s,counts_large=/joint_states/handle/position:rad",
     ),

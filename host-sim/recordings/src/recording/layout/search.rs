@@ -61,7 +61,7 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
     let header = |(at, line): (usize, &&str)| {
         let text = comment(line).unwrap_or(line);
         let has_names = text.chars().any(char::is_alphabetic) && numbers(text).is_none();
-        has_names.then(|| Layout::header(separator, separator.split(text), at))
+        has_names.then(|| Layout::header(separator, names(separator, text, named), at))
     };
     let above = || (lines[..index].iter().enumerate().rev()).filter(|(_, line)| is_content(line));
     // The latest line, and the latest one that is no comment.
@@ -70,7 +70,14 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
         above().find(|(_, line)| comment(line).is_none()),
     ];
     let latest: Vec<_> = latest.into_iter().flatten().filter_map(header).collect();
-    let nearest = latest.iter().find(|header| fits(header));
+    let is_prose = |header: &Layout| {
+        comment(lines[header.line as usize - 1]).is_some()
+            && has_values(header)
+            && !name_columns(&header.names)
+    };
+    let nearest = latest
+        .iter()
+        .find(|header| fits(header) && !is_prose(header));
     let is_name = |name: &String| !is_number(name, separator);
     if let Some(header) = nearest.filter(|header| header.names.iter().all(is_name)) {
         return header.clone();
@@ -128,6 +135,25 @@ fn without_numbers(lines: &[&str], limit: Option<String>) -> Layout {
     }
 }
 
+/// The names of `fields` columns in a line. Names with single blanks in them have two or more between them.
+fn names(separator: Separator, line: &str, fields: usize) -> Vec<String> {
+    let apart = line
+        .split("  ")
+        .map(str::trim)
+        .filter(|name| !name.is_empty());
+    let apart: Vec<_> = apart.map(str::to_owned).collect();
+    match separator == Separator::Whitespace && apart.len() == fields {
+        true => apart,
+        false => separator.split(line),
+    }
+}
+
+/// Whether one of the names of a header is a number, or has a value.
+fn has_values(header: &Layout) -> bool {
+    let is_value = |name: &String| name.contains('=') || is_number(name, header.separator);
+    header.names.iter().any(is_value)
+}
+
 /// Whether one of these names is that of a time, and another one that of a position.
 fn name_columns(names: &[String]) -> bool {
     let [mut timed, mut placed] = [false; 2];
@@ -174,7 +200,7 @@ fn are_labelled(separator: Separator, one: &str, next: &str) -> bool {
 
 /// Whether a line has more than separators.
 pub(super) fn is_content(line: &str) -> bool {
-    let is_separator = |c: char| matches!(c, ',' | ';') || c.is_whitespace();
+    let is_separator = |c: char| matches!(c, ',' | ';' | '"') || c.is_whitespace();
     !line.chars().all(is_separator)
 }
 
@@ -270,7 +296,7 @@ pub(super) fn moments(layout: &Layout, lines: &[&str]) -> Vec<usize> {
 }
 
 /// Separator and number of fields of a line of numbers.
-pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {
+pub(crate) fn numbers(line: &str) -> Option<(Separator, usize)> {
     Separator::ALL.into_iter().find_map(|separator| {
         let fields = separator.split(line);
         let is_number = |field: &String| field.is_empty() || is_number(field, separator);

@@ -6,6 +6,8 @@ use std::io::{self, BufRead, Read};
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::lines::LineReader;
+use super::row_ends;
+use crate::recording::layout::Layout;
 
 /// What separates the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,6 +177,8 @@ pub(crate) struct Lines<R> {
     separator: Separator,
     /// Number of first lines that are emptied.
     skip: u64,
+    /// Whether a separator of its own ends each row.
+    has_row_ends: bool,
     line: Vec<u8>,
     /// Number of bytes of `line` that are read.
     read: usize,
@@ -186,8 +190,17 @@ impl<R: BufRead> Lines<R> {
             inner: LineReader::new(inner, end),
             separator,
             skip,
+            has_row_ends: false,
             line: Vec::new(),
             read: 0,
+        }
+    }
+
+    /// The lines of a text of this layout.
+    pub(crate) fn of(inner: R, layout: &Layout, end: u8) -> Self {
+        Self {
+            has_row_ends: layout.has_row_ends,
+            ..Self::new(inner, layout.separator, layout.skip, end)
         }
     }
 
@@ -206,6 +219,10 @@ impl<R: BufRead> Lines<R> {
             self.line.pop();
         }
         self.line.drain(..stamp(&self.line));
+        if self.has_row_ends {
+            let text = String::from_utf8_lossy(&self.line);
+            self.line = row_ends::cut(&text).as_bytes().to_vec();
+        }
         if skipped || is_comment(&self.line) || self.line.trim_ascii().is_empty() {
             self.line.clear();
         } else if self.separator == Separator::Whitespace {

@@ -148,3 +148,31 @@ fn header_above_numbers_with_separators_of_thousands_is_found() {
         "{error}"
     );
 }
+
+#[test]
+fn quotes_around_nothing_are_a_blank_line() {
+    for text in [
+        "time_ms,counts\n\"\"\n\"\"\n0,0\n1,3\n\"\"\n2,6\n3,9\n",
+        "time_ms;counts\n\" \"\n0;0\n1;3\n2;6\n3;9\n",
+    ] {
+        assert_eq!(counts(&read(text, "").unwrap()), [0, 3, 6, 9], "{text}");
+    }
+}
+
+#[test]
+fn words_of_a_comment_with_a_number_or_a_value_are_no_names() {
+    for comment in ["% 7 9 gain", "% gain =0.5 rad/s,", "# motor 2 begins"] {
+        let text = format!("{comment}\n0 0 1\n1 3 1\n2 6 1\n3 9 1\n");
+        let error = read(&text, "").unwrap_err();
+        let said = "r.csv: line 1: no column t; there are no names but 3 columns, separated by spaces; give";
+        assert!(error.starts_with(said), "{error}");
+        let recording = read(&text, "t=1:ms,counts_large=2:counts").unwrap();
+        assert_eq!(counts(&recording), [0, 3, 6, 9]);
+    }
+    // A time and a position are named, beside a number.
+    let text = "# time_ms, counts, 3\n0,0,1\n1,3,1\n2,6,1\n3,9,1\n";
+    assert_eq!(counts(&read(text, "").unwrap()), [0, 3, 6, 9]);
+    // Names of columns above it are found.
+    let text = format!("% time_ms, counts\n% gain = 5, 7\n{ROWS}");
+    assert_eq!(counts(&read(&text, "").unwrap()), [0, 3, 6, 9]);
+}
