@@ -77,6 +77,8 @@ pub(super) struct Layout {
     pub(super) remarks: bool,
     /// Whether a separator of its own ends each row, as in `1,2;`.
     pub(super) has_row_ends: bool,
+    /// Line of the first NUL bytes of a text, which are skipped.
+    pub(super) nul: Option<u64>,
     /// The rate of rows without a time as the text states it, Hz.
     pub(super) row_rate_hz: Option<f64>,
     /// Whether --row-rate states the rate of the rows.
@@ -190,6 +192,7 @@ impl Layout {
             is_stamped: false,
             remarks: false,
             has_row_ends: false,
+            nul: None,
             row_rate_hz: None,
             has_rate: false,
             rows_above: None,

@@ -5,6 +5,7 @@ pub(super) mod kinds;
 pub(super) mod labelled;
 pub(super) mod long;
 pub(super) mod named_fields;
+mod nuls;
 pub(super) mod value_changes;
 
 use std::io::{BufReader, Cursor, Read};
@@ -67,6 +68,10 @@ impl<'a> Records<'a> {
         read.map_err(|error| cannot_read(name, &error))?;
         kinds::check(&head, name)?;
         let is_cut = head.len() as u64 == HEAD;
+        let nul = nuls::line(&head);
+        if nul.is_some() {
+            head.retain(|byte| *byte != 0);
+        }
         if head.starts_with(BYTE_ORDER_MARK) {
             head.drain(..BYTE_ORDER_MARK.len());
         }
@@ -74,7 +79,10 @@ impl<'a> Records<'a> {
         let end = if head.contains(&b'\n') { b'\n' } else { b'\r' };
         let text = String::from_utf8_lossy(&head).replace(char::from(end), "\n");
         let is_cut_line = is_cut && !text.contains('\n');
-        let input: Box<dyn Read> = Box::new(Cursor::new(head).chain(input));
+        let input: Box<dyn Read> = match nul {
+            None => Box::new(Cursor::new(head).chain(input)),
+            Some(_) => Box::new(Cursor::new(head).chain(nuls::Without(input))),
+        };
         let input = BufReader::with_capacity(1 << 16, input);
         if let Some(other) = json::Other::of(&text).filter(|_| !is_arranged) {
             let rows = other.rows(input, end, name)?;
@@ -121,7 +129,7 @@ impl<'a> Records<'a> {
         Ok(Self {
             name,
             source,
-            layout,
+            layout: Layout { nul, ..layout },
             record: ByteRecord::new(),
         })
     }

@@ -81,6 +81,7 @@ pub(super) const READ: &[(&str, &str)] = &[
         "matrix.txt",
         "--column|t=Time:s,counts_large=Encoder 1 Pos:counts",
     ),
+    ("terminal-with-nul.log", ""),
     ("rows-of-nothing.csv", ""),
     (
         "prose-in-comment.txt",

@@ -17,6 +17,11 @@ impl Layout {
             notes
                 .push("line 1, the first one, is left out: its first number may be cut".to_owned());
         }
+        if let Some(line) = self.nul {
+            notes.push(format!(
+                "NUL bytes in the text are not read, the first in line {line}"
+            ));
+        }
         if self.is_stamped {
             notes.push(
                 "the times of a serial monitor before the lines are not read: they are those of arrival".to_owned(),
