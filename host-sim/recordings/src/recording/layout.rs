@@ -75,6 +75,8 @@ pub(super) struct Layout {
     pub(super) is_stamped: bool,
     /// Whether a row may end with a remark, which is not read.
     pub(super) remarks: bool,
+    /// Whether a row may lack its last fields.
+    pub(super) ends_early: bool,
     /// Whether a separator of its own ends each row, as in `1,2;`.
     pub(super) has_row_ends: bool,
     /// Line of the first NUL bytes of a text, which are skipped.
@@ -191,6 +193,7 @@ impl Layout {
             first_row: String::new(),
             is_stamped: false,
             remarks: false,
+            ends_early: false,
             has_row_ends: false,
             nul: None,
             row_rate_hz: None,

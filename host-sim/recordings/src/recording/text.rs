@@ -35,6 +35,8 @@ pub(super) struct Text<R> {
     columns: usize,
     /// Whether one more field may end a row.
     remarks: bool,
+    /// Whether a row may lack its last fields.
+    ends_early: bool,
 }
 
 impl<R: BufRead> Text<R> {
@@ -50,6 +52,7 @@ impl<R: BufRead> Text<R> {
             first_row: layout.skip + 1,
             columns,
             remarks: layout.remarks,
+            ends_early: layout.ends_early,
         }
     }
 
@@ -84,7 +87,7 @@ impl<R: BufRead> Text<R> {
         let may_end =
             fields == columns + 1 && (self.remarks || record[columns].trim_ascii().is_empty());
         // The log ends in the middle of a row.
-        let is_begin = fields < columns && self.is_cut(line);
+        let is_begin = fields < columns && (self.ends_early || self.is_cut(line));
         match fields == columns || may_end || is_begin {
             true => Ok(Some(line)),
             false => Err(Failure::Input(self.ragged(line, fields, name))),

@@ -98,6 +98,14 @@ pub(super) const READ: &[(&str, &str)] = &[
         "--column t=Time,counts_large=ActPos:counts",
     ),
     (
+        "twincat-filetime.csv",
+        "--column t=Time,counts_large=ActPos:counts",
+    ),
+    (
+        "twincat-sample-times.csv",
+        "--column t=Time,counts_large=ActPos:counts",
+    ),
+    (
         "ros2-echo.csv",
         "--column t=1:s+2:ns,counts_large=5:rad,current=7:A",
     ),

@@ -1,10 +1,11 @@
 //! Text exports of TwinCAT Scope: a header of the file, lines of `key, value, value, ...` for the channels, and
-//! rows in which the channels of each sample time stand behind their time, in milliseconds.
+//! rows in which the channels of each sample time stand behind their time, in milliseconds or as a date of Windows.
 //!
 //! Source of the layout: the exports in the tests of pytcs, a reader for Python (C. Fabry, MIT licence).
 
 use super::Layout;
-use super::search::is_number;
+use super::search::{is_number, number};
+use crate::recording::options::units::FILETIME;
 use crate::recording::text::separator::Separator;
 
 /// The key of the names, and the first word of such a file.
@@ -15,6 +16,9 @@ const START: &str = "Starttime of export";
 
 /// The key of the units of the channels.
 const UNIT: &str = "Unit";
+
+/// What a time in units of 100 ns from 1601 on exceeds since the year 1917, and none in milliseconds does.
+const FILETIMES: f64 = 1e17;
 
 /// What the columns of time are called here; the file has a key in their place.
 const TIME: &str = "Time";
@@ -38,8 +42,19 @@ impl Layout {
         let names = separator.split(lines[index]);
         let is_time: Vec<_> = names.iter().map(|name| name == NAME).collect();
         let units = with_key(UNIT).map_or_else(Vec::new, |at| separator.split(lines[at]));
+        let is_row = |line: &&str| {
+            let first = separator.split(line).into_iter().next();
+            first.is_some_and(|field| is_number(&field, separator))
+        };
+        let rows = lines[index..].iter().position(is_row);
+        let first = rows.map_or_else(Vec::new, |rows| separator.split(lines[index + rows]));
+        let is_filetime = |place: usize| {
+            let time = first.get(place).and_then(|field| number(field, separator));
+            time.is_some_and(|time| time > FILETIMES)
+        };
         // A unit has its quantity behind it, as in `deg (Angle)`.
         let unit = |place: usize| match (is_time[place], units.get(place)) {
+            (true, _) if is_filetime(place) => FILETIME.name(),
             (true, _) => "ms",
             (false, Some(unit)) => unit.split(" (").next().unwrap_or_default(),
             (false, None) => "",
@@ -48,17 +63,14 @@ impl Layout {
             "(None)" => String::new(),
             unit => unit.to_owned(),
         };
-        let is_row = |line: &&str| {
-            let first = separator.split(line).into_iter().next();
-            first.is_some_and(|field| is_number(&field, separator))
-        };
-        let rows = lines[index..].iter().position(is_row);
         let called = |(name, is_time): (String, &bool)| match is_time {
             true => TIME.to_owned(),
             false => name,
         };
         Some(Self {
             units: (0..names.len()).map(unit).collect(),
+            // Channels of a longer sample time have fewer rows.
+            ends_early: true,
             skip: rows.map_or(lines.len(), |rows| index + rows) as u64,
             ..Self::header(
                 separator,
@@ -124,6 +136,65 @@ mod tests {
             "t=Time,counts_large=ActPos",
         );
         assert_eq!(recording.unwrap().trace.counts_large[..2], [0, 34]);
+    }
+
+    /// Of two channels, the one that is read ends after 200 rows.
+    #[test]
+    fn rows_behind_the_end_of_a_channel_are_left_out() {
+        for (is_last, columns) in [(true, "t=3,counts_large=p"), (false, "t=1,counts_large=p")] {
+            let row = |k: u32| {
+                let (slow, fast) = (
+                    format!("{k}\t{}", 3 * k),
+                    format!("{}\t5", f64::from(k) * 0.5),
+                );
+                match (is_last, k < 200) {
+                    (true, true) => format!("{fast}\t{slow}\n"),
+                    (true, false) => format!("{fast}\n"),
+                    (false, true) => format!("{slow}\t{fast}\n"),
+                    (false, false) => format!(" \t \t{fast}\n"),
+                }
+            };
+            let names = if is_last {
+                "Name\tv\tName\tp"
+            } else {
+                "Name\tp\tName\tv"
+            };
+            let rows: String = (0..400).map(row).collect();
+            let text = format!("Name\tx\nStarttime of export\t1\n\n{names}\n\n{rows}EOF\n");
+            let recording = read(&text, columns).unwrap();
+            assert_eq!(recording.t.len(), 200);
+            assert_eq!(recording.trace.counts_large[198..], [594, 597]);
+            let said = "200 rows without a position are left out, the first in line 206";
+            assert!(
+                recording.notes.iter().any(|note| note == said),
+                "{:?}",
+                recording.notes
+            );
+        }
+    }
+
+    #[test]
+    fn dates_of_windows_are_times_of_100_ns() {
+        let row = |k: u64| format!("{};{k};{}\n", 133_500_000_000_000_000 + 10_000 * k, 8 * k);
+        let rows: String = (0..300).map(row).collect();
+        let text = format!(
+            "Name;x;\nStarttime of export;133500000000000000;Friday\n\nName;v;p\nSampleTime;1\n\n{rows}EOF\n"
+        );
+        let recording = read(&text, "t=Time,counts_large=p:counts").unwrap();
+        let passed = recording.t[299] - recording.t[0];
+        assert!((passed - 0.299).abs() < 1e-9, "{passed}");
+        assert_eq!(recording.trace.counts_large[298..], [2384, 2392]);
+        assert_eq!(
+            recording.notes[0],
+            "t from 'Time' (100ns), counts_large from 'p' (counts)"
+        );
+        // The same unit by option.
+        let rows: String = (0..9)
+            .map(|k| format!("{},{}\n", 20_000 * k, 8 * k))
+            .collect();
+        let ticks = format!("ticks,p\n{rows}");
+        let recording = read(&ticks, "t=ticks:100ns,counts_large=p:counts").unwrap();
+        assert_eq!(recording.t[..3], [0.0, 0.002, 0.004]);
     }
 
     #[test]

@@ -126,6 +126,9 @@ const TIME: &[Unit] = &[
     unit(NANOSECONDS, Scale::Over(1e9)),
 ];
 
+/// The unit of the times of Windows, which count from 1601 on.
+pub(crate) const FILETIME: Unit = unit(&["100ns"], Scale::Over(1e7));
+
 const POSITION: &[Unit] = &[
     unit(
         &[
@@ -200,11 +203,19 @@ impl Quantity {
         }
     }
 
+    /// Units that messages do not propose.
+    const fn rare(self) -> &'static [Unit] {
+        match self {
+            Self::Time => &[FILETIME],
+            _ => &[],
+        }
+    }
+
     /// The unit called `name`, in upper or lower case; `rad_s`, `rad per s` and `rad s^-1` are `rad/s`.
     pub(crate) fn unit(self, name: &str) -> Option<&'static Unit> {
         let name = quotient(&name.trim().to_lowercase());
         let called = |unit: &&Unit| unit.names.iter().any(|known| known.to_lowercase() == name);
-        self.units().iter().find(called)
+        self.units().iter().chain(self.rare()).find(called)
     }
 
     /// Names of the units, for messages.

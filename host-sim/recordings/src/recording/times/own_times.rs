@@ -7,7 +7,7 @@ use super::float_times::FloatTimes;
 use super::moment::{DAY_NS, HOUR_NS, Kind, Moment};
 use crate::recording::columns::scaled;
 use crate::recording::layout::{Part, Place};
-use crate::recording::options::units::{Quantity, Unit};
+use crate::recording::options::units::{FILETIME, Quantity, Unit};
 use crate::recording::text::row::Row;
 
 /// A day, s.
@@ -52,6 +52,10 @@ impl OwnTimes {
         let column = at.column.name();
         let moment = match at.part {
             Some(part) => Some(seconds(row, at, part)?),
+            None if at.unit == &FILETIME => Some(Moment {
+                kind: Kind::Seconds,
+                ns: i128::from(row.count(column, at.place)?) * 100,
+            }),
             None => Moment::parse(row.text(column, at.place)?),
         };
         let Some(Moment { kind, ns }) = moment else {
