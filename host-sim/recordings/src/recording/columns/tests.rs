@@ -123,6 +123,12 @@ fn lines_without_the_names_of_the_rows_are_left_out() {
     }
     let two = "2 lines have none of the names and are left out, the first is line 11";
     assert_eq!(notes("\nspeed: 100 step: 0.5\nDONE\n"), [two]);
+    // An object of another kind.
+    let object = |k: usize| format!("{{\"time_ms\":{k},\"counts\":{}}}\n", 3 * k);
+    let objects: String = (0..9).map(object).collect();
+    let recording = read(&format!("{objects}{{\"event\":5}}\n"), "").unwrap();
+    assert_eq!(recording.t.len(), 9);
+    assert!(recording.notes.iter().any(|note| note == one));
     // A row that is broken.
     for line in ["time_ms: 9", "9 counts: ", "time_ms = 9 counts 27"] {
         let error = read(&format!("{above}{line}\n{below}"), "").unwrap_err();
