@@ -30,7 +30,7 @@ pub(super) use search::{UNKNOWN, is_fraction, is_number, numbers, unit_since_197
 use search::{
     fractional, is_content, moments, named, probable, since_1970, two_levels, without_value,
 };
-use seen::Seen;
+pub(super) use seen::Seen;
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
 

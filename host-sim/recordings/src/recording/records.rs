@@ -99,16 +99,14 @@ impl<'a> Records<'a> {
         } else if let Some(begin) = json::Begin::of(&text, name)? {
             let layout = Layout {
                 fractional: begin.fractional.clone(),
+                seen: begin.seen.clone(),
                 moments: begin.moments.clone(),
                 since_1970: begin.since_1970.clone(),
                 ..named(&begin.names, begin.line)
             };
             (layout, Source::Json(Json::new(input, end, &begin)))
         } else if let Some(begin) = labelled::Begin::of(&text) {
-            let layout = Layout {
-                moments: begin.moments(),
-                ..named(&begin.names, begin.line)
-            };
+            let layout = begin.told(named(&begin.names, begin.line));
             (layout, Source::Labelled(Labelled::new(input, end, &begin)))
         } else if let Some(begin) = long::Begin::of(&text, options) {
             let layout = begin.layout.clone();

@@ -21,6 +21,10 @@ use separator::{Lines, Separator};
 const QUOTED: usize = 256;
 const QUOTED_LINES: usize = 20;
 
+/// Rows that are looked at below one with another number of fields, and fewest that tell.
+const LOOKED_AT: usize = 100;
+const FEWEST: usize = 10;
+
 /// A line that some programs write behind the last row.
 const END_OF_FILE: &[u8] = b"EOF";
 
@@ -94,13 +98,34 @@ impl<R: BufRead> Text<R> {
         }
     }
 
-    fn ragged(&self, line: u64, fields: usize, name: &str) -> String {
+    /// Whether most of the next rows have this number of `fields`.
+    fn are_alike(&mut self, fields: usize) -> bool {
+        let mut record = ByteRecord::new();
+        let (mut alike, mut below) = (0, 0);
+        while below < LOOKED_AT && self.reader.read_byte_record(&mut record).unwrap_or(false) {
+            alike += usize::from(record.len() == fields);
+            below += 1;
+        }
+        below >= FEWEST && 10 * alike >= 9 * below
+    }
+
+    fn ragged(&mut self, line: u64, fields: usize, name: &str) -> String {
         let columns = self.columns;
         let model = match self.header {
             0 => format!("the first row, in line {},", self.first_row),
             1 => "the first line".to_owned(),
             line => format!("the header in line {line}"),
         };
+        let noun = if fields == 1 { "field" } else { "fields" };
+        if self.are_alike(fields) {
+            let remedy = match self.header {
+                0 => "remove that line",
+                _ => "write one name for each field, or remove the lines above that are no rows",
+            };
+            return format!(
+                "{name}: line {line}: {fields} {noun}, as in the lines below, where {model} has {columns}; {remedy}"
+            );
+        }
         let remedy = match (self.header, fields > columns) {
             (0, _) => "one of these lines is cut, or is two rows run together: remove it",
             (_, false) => "remove the line if the log was cut there",
@@ -110,7 +135,6 @@ impl<R: BufRead> Text<R> {
             true => "; numbers with a decimal comma need another separator than a comma",
             false => "",
         };
-        let noun = if fields == 1 { "field" } else { "fields" };
         format!(
             "{name}: line {line}: {fields} {noun} where {model} has {columns}; {remedy}{commas}"
         )

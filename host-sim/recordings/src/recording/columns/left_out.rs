@@ -27,9 +27,15 @@ impl LeftOut {
     /// Note on rows of other signals.
     pub(super) fn of_others(self) -> Option<String> {
         let Self { rows, first } = self;
-        (rows > 0).then(|| {
-            format!("{rows} rows without a position are left out, the first in line {first}")
-        })
+        match rows {
+            0 => None,
+            1 => Some(format!(
+                "the row in line {first} has no position and is left out"
+            )),
+            _ => Some(format!(
+                "{rows} rows without a position are left out, the first in line {first}"
+            )),
+        }
     }
 
     /// Note on lines that are no rows.

@@ -32,7 +32,7 @@ impl Seen {
         (0..layout.names.len()).map(column).collect()
     }
 
-    fn of_numbers(numbers: &[f64]) -> Self {
+    pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
         let largest = numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let steps = numbers.windows(2).map(|pair| pair[1] - pair[0]);
         let mut rising: Vec<_> = steps.clone().filter(|step| *step > 0.0).collect();

@@ -5,14 +5,14 @@ mod fields;
 mod lists;
 mod other;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::io::BufRead;
 
 use csv::ByteRecord;
 use terminal::failure::Failure;
 
-use super::named_fields::{Field, Places, names};
-use crate::recording::layout::{SEARCHED, unit_since_1970};
+use super::named_fields::{Field, Places, fractional, names, numbers};
+use crate::recording::layout::{SEARCHED, Seen, unit_since_1970};
 use crate::recording::text::lines::LineReader;
 use crate::recording::text::separator::is_comment;
 use crate::recording::times::moment::Moment;
@@ -34,6 +34,8 @@ pub(super) struct Begin {
     pub(super) line: u64,
     /// Places of the names that have a number with a fraction in the first objects.
     pub(super) fractional: Vec<usize>,
+    /// What the numbers of each name tell in the first objects.
+    pub(super) seen: Vec<Seen>,
     /// Places of the names that have a date or a time of day in the first object.
     pub(super) moments: Vec<usize>,
     /// Places of the names that have a time since 1970 in the first object, and its unit.
@@ -73,12 +75,12 @@ impl Begin {
         let texts = || names.iter().filter_map(|name| first.get(name)).enumerate();
         let is_moment = |(_, text): &(usize, &String)| Moment::parse(text).is_some();
         let unit = |text: &String| unit_since_1970(text.parse().ok()?);
-        let has_fraction = |field: &Field| field.text.parse().is_ok_and(|x: f64| x.fract() != 0.0);
-        let fractions = objects().take(SEARCHED).flatten().filter(has_fraction);
-        let fractions: HashSet<_> = fractions.map(|field| field.name).collect();
+        let numbers = numbers(&names, objects().take(SEARCHED));
         Ok(Some(Self {
-            fractional: (0..names.len())
-                .filter(|place| fractions.contains(&names[*place]))
+            fractional: fractional(&numbers),
+            seen: numbers
+                .iter()
+                .map(|column| Seen::of_numbers(column))
                 .collect(),
             moments: texts().filter(is_moment).map(|(place, _)| place).collect(),
             since_1970: texts()

@@ -8,8 +8,8 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use super::named_fields::{Field, Mark, Places, names};
-use crate::recording::layout::SEARCHED;
+use super::named_fields::{Field, Mark, Places, fractional, names, numbers};
+use crate::recording::layout::{Layout, SEARCHED, Seen, unit_since_1970};
 use crate::recording::options::Column;
 use crate::recording::text::lines::LineReader;
 use crate::recording::text::separator::{bare, is_comment};
@@ -22,28 +22,56 @@ pub(super) struct Begin {
     pub(super) names: Vec<String>,
     /// Line of the first row.
     pub(super) line: u64,
+    /// The numbers of each column in the first rows.
+    numbers: Vec<Vec<f64>>,
 }
 
 impl Begin {
     /// Reads the first bytes `head` of a log; `None` if it has no two adjacent rows of the same names.
     pub(super) fn of(head: &str) -> Option<Self> {
-        let lines = (1..).zip(head.lines().take(SEARCHED));
-        let rows = lines
-            .map(|(line, text)| (line, bare(text.as_bytes())))
-            .filter(|(_, text)| !text.trim_ascii().is_empty() && !is_comment(text))
-            .map(|(line, text)| (line, fields(text).map(names)));
-        let mut above: Option<Self> = None;
-        for (line, found) in rows {
+        let lines = || (1..).zip(head.lines().take(SEARCHED));
+        let texts = || {
+            lines()
+                .map(|(line, text)| (line, bare(text.as_bytes())))
+                .filter(|(_, text)| !text.trim_ascii().is_empty() && !is_comment(text))
+        };
+        let mut above: Option<(u64, Vec<String>)> = None;
+        for (line, text) in texts() {
+            let found = fields(text).map(names);
             match (above, found) {
-                (Some(begin), Some(names)) if begin.names == names => return Some(begin),
-                (_, found) => above = found.map(|names| Self { names, line }),
+                (Some((line, names)), Some(found)) if names == found => {
+                    let rows = texts().filter_map(|(_, text)| fields(text));
+                    return Some(Self {
+                        numbers: numbers(&names, rows),
+                        names,
+                        line,
+                    });
+                }
+                (_, found) => above = found.map(|names| (line, names)),
             }
         }
         None
     }
 
+    /// The layout with what the first rows tell of the columns, beside what `layout` has.
+    pub(super) fn told(&self, layout: Layout) -> Layout {
+        let first = |place: usize| self.numbers[place].first().copied();
+        let since_1970 = |place| Some((place, unit_since_1970(first(place)?)?));
+        Layout {
+            moments: self.moments(),
+            fractional: fractional(&self.numbers),
+            seen: self
+                .numbers
+                .iter()
+                .map(|column| Seen::of_numbers(column))
+                .collect(),
+            since_1970: (0..self.names.len()).filter_map(since_1970).collect(),
+            ..layout
+        }
+    }
+
     /// Places of the columns that have a date or a time of day.
-    pub(super) fn moments(&self) -> Vec<usize> {
+    fn moments(&self) -> Vec<usize> {
         let places = self.names.iter().position(|name| name == logged::NAME);
         places.into_iter().collect()
     }

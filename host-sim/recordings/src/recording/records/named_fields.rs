@@ -36,6 +36,28 @@ pub(crate) fn names(fields: Vec<Field>) -> Vec<String> {
     names
 }
 
+/// The numbers of each of `names` in `rows`.
+pub(crate) fn numbers(names: &[String], rows: impl Iterator<Item = Vec<Field>>) -> Vec<Vec<f64>> {
+    let mut numbers = vec![Vec::new(); names.len()];
+    for field in rows.flatten() {
+        let place = names.iter().position(|name| *name == field.name);
+        if let (Some(place), Ok(number)) = (place, field.text.parse()) {
+            numbers[place].push(number);
+        }
+    }
+    numbers
+}
+
+/// Places of the columns with a number that has a fraction.
+pub(crate) fn fractional(columns: &[Vec<f64>]) -> Vec<usize> {
+    let has_fraction = |place: &usize| {
+        columns[*place]
+            .iter()
+            .any(|number: &f64| number.fract() != 0.0)
+    };
+    (0..columns.len()).filter(has_fraction).collect()
+}
+
 /// The places of names, and what the last row has there.
 pub(crate) struct Places {
     names: Vec<String>,

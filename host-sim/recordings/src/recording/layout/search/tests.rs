@@ -176,3 +176,23 @@ fn words_of_a_comment_with_a_number_or_a_value_are_no_names() {
     let text = format!("% time_ms, counts\n% gain = 5, 7\n{ROWS}");
     assert_eq!(counts(&read(&text, "").unwrap()), [0, 3, 6, 9]);
 }
+
+#[test]
+fn rows_with_other_fields_than_the_first_line_are_named_as_such() {
+    let rows: String = (0..40).map(|k| format!("{k},{},1\n", 3 * k)).collect();
+    let error = |above: &str| {
+        let options = "t=1:ms,counts_large=2:counts";
+        read(&format!("{above}\n{rows}"), options).unwrap_err()
+    };
+    let settings = error("angle,rate,seconds,gain\n90,1000,5,2");
+    let said = "r.csv: line 3: 3 fields, as in the lines below, where the first line has 4; write one name for each \
+                field, or remove the lines above that are no rows";
+    assert_eq!(settings, said);
+    let said = "r.csv: line 2: 3 fields, as in the lines below, where the first row, in line 1, has 2; remove that line";
+    assert_eq!(error("1,2"), said);
+    // One row among others is the odd one.
+    let odd = rows.replacen("7,21,1", "7,21", 1);
+    let error = read(&format!("t_ms,counts,on\n{odd}"), "").unwrap_err();
+    let said = "r.csv: line 9: 2 fields where the first line has 3; remove the line if the log was cut there";
+    assert_eq!(error, said);
+}

@@ -61,3 +61,27 @@ fn time_without_a_name_is_the_column_that_rises_most_evenly() {
         assert!(!error.contains("monitor of SimpleFOC"), "{error}");
     }
 }
+
+#[test]
+fn units_of_rows_with_names_fit_the_numbers_too() {
+    for (first, step, unit) in [(0.0, 1.0, "ms"), (1.7e9, 0.5, "s"), (5e6, 2000.0, "us")] {
+        for (position, angle) in [(1.5, "rad"), (80.5, "deg")] {
+            let labelled = |k: u32| {
+                let t = first + step * f64::from(k);
+                format!("time: {t} pos: {}", position + f64::from(k % 3))
+            };
+            let object = |k: u32| {
+                let t = first + step * f64::from(k);
+                format!(
+                    "{{\"time\": {t}, \"pos\": {}}}",
+                    position + f64::from(k % 3)
+                )
+            };
+            for text in [rows("", labelled), rows("", object)] {
+                let error = read(&text, "").unwrap_err();
+                let said = format!("--column 't=time:{unit},counts_large=pos:{angle}'");
+                assert!(error.contains(&said), "{text:.60}: {error}");
+            }
+        }
+    }
+}
