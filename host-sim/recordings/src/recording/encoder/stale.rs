@@ -15,8 +15,9 @@ const ALIKE: f64 = 0.25;
 /// Largest part of a step that is a small one.
 const SMALL: f64 = 0.25;
 
-/// Fewest places that tell.
-const FEWEST: usize = 3;
+/// Fewest places that tell, and least ratio of them to those that only a noise makes.
+const FEWEST: usize = 4;
+const CLEAR: usize = 4;
 
 /// Least part of the steps of a fast shaft that are 0 where the encoder is read less often than the log is written.
 const LESS_OFTEN: f64 = 0.1;
@@ -149,7 +150,7 @@ impl Stale {
                 self.left_out, self.first_left_out
             ));
         }
-        if self.places >= FEWEST && self.places > self.noisy {
+        if self.places >= FEWEST && self.places > CLEAR * self.noisy {
             let remedy = match options.takes_options {
                 true => "add --drop-stale to leave these rows out",
                 false => "remove these rows",

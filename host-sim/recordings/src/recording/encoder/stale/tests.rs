@@ -125,6 +125,32 @@ fn motions_without_stale_readings_are_not_named() {
     assert!(!said.contains("stays in"), "{said}");
 }
 
+/// 4 s with a Gaussian noise on the counts of a swing.
+#[test]
+fn noise_of_counts_is_no_stale_reading() {
+    let mut state = 1_u64;
+    let mut uniform = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for trial in 0..60 {
+        let deviation = [0.3, 1.0, 2.0, 4.0, 8.0][trial % 5];
+        let speed = [4.0, 5.0, 6.0, 8.0, 12.0, 20.0][trial % 6];
+        let frequency = 1.0 + 7.0 * uniform();
+        let mut row = |k: u32| {
+            let t = 1e-3 * f64::from(k);
+            let noise = deviation * (0..12).map(|_| uniform()).sum::<f64>() - 6.0 * deviation;
+            let position = 1e3 * speed / frequency * (frequency * t).sin() + noise;
+            format!("{t:.3},{}\n", position.floor())
+        };
+        let rows: String = (0..4000).map(&mut row).collect();
+        let said = note(&format!("t,counts_large\n{rows}"));
+        assert!(!said.contains("stays in"), "{deviation} {speed}: {said}");
+    }
+}
+
 #[test]
 fn readings_of_another_clock_are_named_with_their_rate() {
     for hz in [600, 700, 850] {
