@@ -116,7 +116,7 @@ fn column_help() -> String {
 /// Help text of `--drop-stale`.
 fn drop_stale_help() -> String {
     format!(
-        "Leave out rows in which counts_large stays though the shaft turned by {FAST} counts or more in the row before: \
+        "Leave out rows in which counts_large stays though the shaft turned by {FAST} counts or more in both rows before: \
          stale readings, as where a bus lost a message. At most {LONGEST} in turn: a shaft that stays for longer rests"
     )
 }

@@ -69,7 +69,8 @@ pub(crate) struct Stale {
 impl Stale {
     /// Whether the reading `count` is a stale one, which is left out then.
     pub(crate) fn is_left_out(&mut self, count: i64, line: u64) -> bool {
-        let is_fast = self.steps[0].counts.abs() >= FAST;
+        // A slow shaft has one large step where an absolute encoder wraps.
+        let is_fast = self.steps[..2].iter().all(|step| step.counts.abs() >= FAST);
         let is_same = self.last.is_some_and(|(last, _)| last == count);
         if !(is_fast && is_same && self.in_turn < LONGEST) {
             return false;

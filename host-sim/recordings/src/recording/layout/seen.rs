@@ -16,7 +16,7 @@ pub(crate) struct Seen {
     pub(crate) largest: f64,
     /// The median of the steps of a column that rises as a time does.
     pub(crate) step: Option<f64>,
-    /// Mean distance of the steps from the median, over it.
+    /// Sum of the distances of the steps from the median, over it.
     unevenness: f64,
 }
 

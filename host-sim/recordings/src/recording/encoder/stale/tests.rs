@@ -197,6 +197,12 @@ fn rows_of_stale_readings_are_left_out_and_others_stay() {
 }
 
 #[test]
+fn slow_shaft_keeps_its_rows_where_its_encoder_wraps() {
+    let wraps = |t: f64| (300.0 * t).floor().rem_euclid(64.0);
+    assert_eq!(read(&text(wraps, |k| k), &dropping()).t.len(), 3000);
+}
+
+#[test]
 fn shaft_that_stops_keeps_its_rows_from_the_fourth_on() {
     let mut drop = dropping();
     let wall = |t: f64| (40_000.0 * t).min(40_000.0);
