@@ -8,6 +8,7 @@ mod codes;
 mod controller;
 mod current_scale;
 mod design;
+mod device;
 mod excite;
 mod fingerprint;
 mod index;

@@ -1,6 +1,8 @@
 //! The switchboard: scenes swapped while the handle moves.
 
-use estimator_core::{Count, FiniteDifference, Handover, Sample, Side, SteadyKalmanTriple, preset};
+mod choice;
+
+use estimator_core::{Count, Sample, SteadyKalmanTriple, preset};
 use haptic_control::{
     Action, AnyScene, Controller, Currents, Hold, Role, Scene, SceneKind, Senses, Switchboard,
     SwitchboardState, Torque, Viscous, scenes,
@@ -280,30 +282,6 @@ fn restart_equals_a_start_and_unneeded_estimates_are_absent() {
         for k in 301..600 {
             let actions = [&mut restarted, &mut fresh].map(|state| board.step(state, &far(k)));
             assert_eq!(actions[0], actions[1], "{scene:?} {k}");
-        }
-    }
-}
-
-/// The choice of an operator among several estimators, while scenes come and go and the control begins again.
-#[test]
-fn chosen_estimator_outlasts_scenes_and_restarts() {
-    type Both = Handover<FiniteDifference, Large>;
-    const BOTH: Both = preset!(Handover::new(FiniteDifference, LARGE, 10, 10));
-    let board = Switchboard::new(BOTH, HANDLE, RIG, RATE);
-    let mut state = board.start(&at(0));
-    assert_eq!(state.large().in_charge(), Some(Side::First));
-    state.large_mut().select(Side::Second);
-    for restarts in [false, true] {
-        if restarts {
-            board.restart(&mut state, &at(0));
-        }
-        for kind in [SceneKind::FreeAir, SceneKind::Off, SceneKind::Wall] {
-            board.select(&mut state, usual(kind), &at(0));
-            for _ in 0..50 {
-                board.step(&mut state, &at(0));
-            }
-            let chosen = state.large().in_charge();
-            assert_eq!(chosen, Some(Side::Second), "{kind}, {restarts}");
         }
     }
 }
