@@ -161,7 +161,7 @@ impl LeftOut {
         let rate = trace.rate_hz;
         if trace.periods.is_none() {
             return format!(
-                "{unevenness}, which the few digits of t explain, or which are one in 1000 at most; the estimators assume a constant step \
+                "{unevenness}: the few digits of t explain them, or they are few; the estimators assume a constant step \
                  of 1/{rate} s; --resample {rate:.0} makes the rows even"
             );
         }

@@ -168,7 +168,8 @@ impl RecordingOptions {
             return Ok(());
         }
         Err(Failure::Input(format!(
-            "--column, --modulus, --row-rate, --drop-stale, --resample and --counts-per-rev read a recording: give {give}"
+            "--column, --modulus, --row-rate, --drop-stale, --resample and --counts-per-rev read a recording: give \
+             {give}"
         )))
     }
 

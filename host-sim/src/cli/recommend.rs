@@ -9,7 +9,7 @@ use experiments::recommend::{self, Settings, recommend};
 use experiments::rows::json;
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::{Motion, Recording};
+use recordings::recording::Recording;
 use report::Printout;
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note};
@@ -114,9 +114,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         let rows: Vec<_> = logs
             .iter()
             .map(|(name, log)| {
-                let mut motion = Motion::default();
-                motion.add(&log.t, &log.trace.counts_large);
-                let motion = motion.line(counts_per_rev);
+                let motion = log.motion().line(counts_per_rev);
                 let rows = log.t.len();
                 format!("{name}: {rows} rows at {} Hz, {motion}", log.trace.rate_hz)
             })

@@ -267,7 +267,7 @@ fn steps_that_the_digits_of_t_explain_are_a_constant_period() {
     let notes = String::from_utf8(output.stderr).unwrap();
     let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        notes.contains("which the few digits of t explain"),
+        notes.contains("the few digits of t explain them"),
         "{notes}"
     );
     let rows = json(&String::from_utf8(output.stdout).unwrap());

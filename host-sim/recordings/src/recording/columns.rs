@@ -2,7 +2,7 @@
 
 mod checked;
 pub(super) mod currents;
-mod left_out;
+pub(super) mod left_out;
 pub(super) mod stamps;
 
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};

@@ -26,10 +26,8 @@ use super::text::separator::{Separator, comment, stamp};
 use endings::Ending;
 use formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 pub(super) use places::{Part, Place, Places};
-pub(super) use search::{UNKNOWN, is_fraction, is_number, numbers, unit_since_1970};
-use search::{
-    fractional, is_content, moments, named, probable, since_1970, two_levels, without_value,
-};
+pub(super) use search::{UNKNOWN, is_number, number, numbers, unit_since_1970};
+use search::{is_content, moments, named, probable, since_1970, two_levels, without_value};
 pub(super) use seen::Seen;
 use unit_row::UnitRow;
 pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
@@ -57,8 +55,6 @@ pub(super) struct Layout {
     pub(super) searched: Option<String>,
     /// Places of the columns that are 0 or 1 in the first rows, and both.
     pub(super) two_levels: Vec<usize>,
-    /// Places of the columns that have a number with a fraction in the first rows.
-    pub(super) fractional: Vec<usize>,
     /// What the numbers of each column tell in the first rows; empty where no rows are seen.
     pub(super) seen: Vec<Seen>,
     /// Places of the columns that have no value in the first rows.
@@ -135,7 +131,7 @@ impl Layout {
         };
         if let Some(layout) = Self::labview(&lines).or_else(|| Self::twincat(&lines)) {
             return Ok(Self {
-                fractional: fractional(&layout, &lines),
+                seen: Seen::of(&layout, &lines),
                 ..layout
             });
         }
@@ -160,7 +156,6 @@ impl Layout {
             has_rate: options.row_rate_hz.is_some(),
             is_stamped: is_stamped(head),
             two_levels: two_levels(&layout, &lines),
-            fractional: fractional(&layout, &lines),
             seen: Seen::of(&layout, &lines),
             without_value: without_value(&layout, &lines),
             since_1970: since_1970(&layout, &lines),
@@ -184,7 +179,6 @@ impl Layout {
             skip: index as u64 + 1,
             searched: None,
             two_levels: Vec::new(),
-            fractional: Vec::new(),
             seen: Vec::new(),
             without_value: Vec::new(),
             cuts_first: false,
@@ -238,6 +232,11 @@ impl Layout {
         }
     }
 
+    /// Whether the column at `place` has a number with a fraction in the first rows.
+    fn is_fractional(&self, place: usize) -> bool {
+        self.seen.get(place).is_some_and(|seen| seen.is_fractional)
+    }
+
     /// Whether the text has a line with the names of its columns.
     pub(super) fn has_header(&self) -> bool {
         self.line > 0
@@ -266,7 +265,7 @@ impl Layout {
                 .any(|n| n == self.names.len());
             // It writes fractions, and first a target. A whole number that rises in each row is a time.
             let rises = self.seen.first().is_some_and(|first| first.step.is_some());
-            let is_timed = rises && !self.fractional.contains(&0);
+            let is_timed = rises && !self.is_fractional(0);
             return (known && self.separator == Separator::Tab && !is_timed).then_some(&SIMPLEFOC);
         }
         Format::of(&self.names)

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use device_files::to_digits;
 
+use super::Recording;
+
 /// Least time over which a speed is taken, s: at single rows a count is a large one.
 const SPAN_S: f64 = 0.02;
 
@@ -18,6 +20,16 @@ pub struct Motion {
     begin: Option<(f64, i64)>,
     /// Largest speed, counts/s.
     fastest: f64,
+}
+
+impl Recording {
+    /// Its motion, with unwrapped counts.
+    #[must_use]
+    pub fn motion(&self) -> Motion {
+        let mut motion = Motion::default();
+        motion.add(&self.t, &self.trace.counts_large);
+        motion
+    }
 }
 
 impl Motion {

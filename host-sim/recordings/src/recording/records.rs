@@ -98,7 +98,6 @@ impl<'a> Records<'a> {
             (layout, Source::ValueChanges(Box::new(changes)))
         } else if let Some(begin) = json::Begin::of(&text, name)? {
             let layout = Layout {
-                fractional: begin.fractional.clone(),
                 seen: begin.seen.clone(),
                 moments: begin.moments.clone(),
                 since_1970: begin.since_1970.clone(),

@@ -11,13 +11,13 @@ use crate::recording::text::row::Row;
 
 /// Number of rows that are left out, and line of the first.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LeftOut {
-    pub(super) rows: usize,
-    pub(super) first: u64,
+pub(crate) struct LeftOut {
+    pub(crate) rows: usize,
+    pub(crate) first: u64,
 }
 
 impl LeftOut {
-    pub(super) fn add(&mut self, line: u64) {
+    pub(crate) fn add(&mut self, line: u64) {
         if self.rows == 0 {
             self.first = line;
         }

@@ -1,6 +1,7 @@
 //! Stale readings: rows with the position of the row before where the shaft moves, as where a bus lost a message.
 
 use crate::recording::columns::Columns;
+use crate::recording::columns::left_out::LeftOut;
 use crate::recording::options::{Column, ReadOptions};
 
 /// Least step from row to row of a shaft that does not stop within a row, counts.
@@ -60,10 +61,9 @@ pub(crate) struct Stale {
     /// Steps of 0 that the next one does not make up for, and steps of a fast shaft.
     held: usize,
     fast: usize,
-    /// Readings in turn that were left out, all of them, and the line of the first one.
+    /// Readings that were left out, and those of them in turn.
+    left_out: LeftOut,
     in_turn: usize,
-    left_out: usize,
-    first_left_out: u64,
 }
 
 impl Stale {
@@ -75,17 +75,14 @@ impl Stale {
         if !(is_fast && is_same && self.in_turn < LONGEST) {
             return false;
         }
-        if self.left_out == 0 {
-            self.first_left_out = line;
-        }
         self.in_turn += 1;
-        self.left_out += 1;
+        self.left_out.add(line);
         true
     }
 
     /// Number of rows that were left out.
     pub(crate) fn left_out(&self) -> usize {
-        self.left_out
+        self.left_out.rows
     }
 
     /// Adds the reading `count` of the row at `t`, s.
@@ -145,10 +142,14 @@ impl Stale {
 
     /// The note on the readings of a `column`, which come at `rate_hz`.
     pub(crate) fn note(&self, column: &str, rate_hz: f64, options: &ReadOptions) -> Option<String> {
-        if self.left_out > 0 {
+        let LeftOut { rows, first } = self.left_out;
+        if rows > 0 {
+            let (rows, are) = match rows {
+                1 => ("1 row".to_owned(), "is"),
+                _ => (format!("{rows} rows"), "are"),
+            };
             return Some(format!(
-                "{} rows are left out where {column} stays in a fast motion, the first in line {}",
-                self.left_out, self.first_left_out
+                "{rows} {are} left out where {column} stays in a fast motion, the first in line {first}"
             ));
         }
         if self.places >= FEWEST && self.places > CLEAR * self.noisy {

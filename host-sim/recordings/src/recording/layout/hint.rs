@@ -75,7 +75,7 @@ fn numbered(layout: &Layout) -> String {
         guessed.push(unit);
         unit
     };
-    let has_integer = |place| is_number(place) && !layout.fractional.contains(&place);
+    let has_integer = |place| is_number(place) && !layout.is_fractional(place);
     let (mut last, time) = match layout.since_1970.first() {
         Some((place, "s")) if [*place, place + 1].into_iter().all(has_integer) => (
             place + 1,

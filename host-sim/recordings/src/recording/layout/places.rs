@@ -192,7 +192,7 @@ impl Layout {
     /// unit, as `stamp.nanosec` from `stamp.sec`.
     pub(super) fn part_of_second(&self, place: usize, seconds: &'static Unit) -> Option<Part> {
         let stem = seconds.before(&self.names[place]);
-        let stem = stem.filter(|_| seconds.per_s() == 1.0 && !self.fractional.contains(&place))?;
+        let stem = stem.filter(|_| seconds.per_s() == 1.0 && !self.is_fractional(place))?;
         let units = || {
             Quantity::Time
                 .units()

@@ -238,16 +238,6 @@ pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
     (0..layout.names.len()).filter(has_two).collect()
 }
 
-/// Places of the columns of `layout` that have a number with a fraction in the rows among `lines`.
-pub(super) fn fractional(layout: &Layout, lines: &[&str]) -> Vec<usize> {
-    let rows = rows(layout, lines);
-    let has_fraction = |place: &usize| {
-        let mut fields = rows.iter().filter_map(|row| row.get(*place));
-        fields.any(|field| is_fraction(field, layout.separator))
-    };
-    (0..layout.names.len()).filter(has_fraction).collect()
-}
-
 /// Places of the columns of `layout` that have no value in the rows among `lines`, at least two.
 pub(super) fn without_value(layout: &Layout, lines: &[&str]) -> Vec<usize> {
     let rows = rows(layout, lines);
@@ -307,16 +297,11 @@ pub(crate) fn numbers(line: &str) -> Option<(Separator, usize)> {
 }
 
 /// The number that a field is.
-pub(super) fn number(field: &str, separator: Separator) -> Option<f64> {
+pub(crate) fn number(field: &str, separator: Separator) -> Option<f64> {
     match separator.allows_decimal_comma() {
         true => field.replacen(',', ".", 1).parse().ok(),
         false => field.parse().ok(),
     }
-}
-
-/// Whether a field is a number with a fraction.
-pub(crate) fn is_fraction(field: &str, separator: Separator) -> bool {
-    number(field, separator).is_some_and(|number| number.fract() != 0.0)
 }
 
 /// Whether a field is a number or a time.

@@ -12,8 +12,11 @@ const FEWEST: usize = 3;
 /// The numbers of a column in the first rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Seen {
+    pub(crate) first: Option<f64>,
     /// The largest number without its sign.
     pub(crate) largest: f64,
+    /// Whether a number has a fraction.
+    pub(crate) is_fractional: bool,
     /// The median of the steps of a column that rises as a time does.
     pub(crate) step: Option<f64>,
     /// Sum of the distances of the steps from the median, over it.
@@ -33,24 +36,26 @@ impl Seen {
     }
 
     pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
-        let largest = numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let seen = Self {
+            first: numbers.first().copied(),
+            largest: numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs())),
+            is_fractional: numbers.iter().any(|x| x.fract() != 0.0),
+            ..Self::default()
+        };
         let steps = numbers.windows(2).map(|pair| pair[1] - pair[0]);
         let mut rising: Vec<_> = steps.clone().filter(|step| *step > 0.0).collect();
         let falls = steps.clone().any(|step| step < 0.0 || step.is_nan());
         let share = rising.len() as f64 / steps.len() as f64;
         if falls || numbers.len() < FEWEST || share < RISES {
-            return Self {
-                largest,
-                ..Self::default()
-            };
+            return seen;
         }
         rising.sort_by(f64::total_cmp);
         let median = rising[rising.len() / 2];
         let off: f64 = steps.map(|step| (step - median).abs()).sum();
         Self {
-            largest,
             step: Some(median),
             unevenness: off / median,
+            ..seen
         }
     }
 }

@@ -11,7 +11,7 @@ use std::io::BufRead;
 use csv::ByteRecord;
 use terminal::failure::Failure;
 
-use super::named_fields::{Field, Places, fractional, names, numbers};
+use super::named_fields::{Field, Places, names, seen};
 use crate::recording::layout::{SEARCHED, Seen, unit_since_1970};
 use crate::recording::text::lines::LineReader;
 use crate::recording::text::separator::is_comment;
@@ -32,8 +32,6 @@ pub(super) struct Begin {
     pub(super) names: Vec<String>,
     /// Line of the first object.
     pub(super) line: u64,
-    /// Places of the names that have a number with a fraction in the first objects.
-    pub(super) fractional: Vec<usize>,
     /// What the numbers of each name tell in the first objects.
     pub(super) seen: Vec<Seen>,
     /// Places of the names that have a date or a time of day in the first object.
@@ -75,13 +73,8 @@ impl Begin {
         let texts = || names.iter().filter_map(|name| first.get(name)).enumerate();
         let is_moment = |(_, text): &(usize, &String)| Moment::parse(text).is_some();
         let unit = |text: &String| unit_since_1970(text.parse().ok()?);
-        let numbers = numbers(&names, objects().take(SEARCHED));
         Ok(Some(Self {
-            fractional: fractional(&numbers),
-            seen: numbers
-                .iter()
-                .map(|column| Seen::of_numbers(column))
-                .collect(),
+            seen: seen(&names, objects().take(SEARCHED), |text| text.parse().ok()),
             moments: texts().filter(is_moment).map(|(place, _)| place).collect(),
             since_1970: texts()
                 .filter_map(|(place, text)| Some((place, unit(text)?)))

@@ -87,16 +87,12 @@ pub(crate) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
         return refused(&format!("this is {what}; {remedy}, or give the text as -"));
     }
     let head = &head[..head.len().min(SEARCHED)];
+    let is_control = |byte: &&u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
+    let nuls = head.iter().filter(|byte| **byte == 0).count();
     // Less than half of a text are the NUL bytes of a logger that began anew.
-    let others: Vec<_> = head.iter().filter(|byte| **byte != 0).collect();
-    let is_text = 2 * others.len() > head.len();
-    let text = if is_text {
-        others
-    } else {
-        head.iter().collect()
-    };
-    let is_control = |byte: &&&u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
-    if text.iter().filter(is_control).count() > text.len() / CONTROL_PART {
+    let ignored = if 2 * nuls < head.len() { nuls } else { 0 };
+    let controls = head.iter().filter(is_control).count() - ignored;
+    if controls > (head.len() - ignored) / CONTROL_PART {
         return refused("the file is not text; write it as CSV");
     }
     Ok(())

@@ -8,7 +8,7 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use super::named_fields::{Field, Mark, Places, fractional, names, numbers};
+use super::named_fields::{Field, Mark, Places, names, seen};
 use crate::recording::layout::{Layout, SEARCHED, Seen, unit_since_1970};
 use crate::recording::options::Column;
 use crate::recording::text::lines::LineReader;
@@ -22,8 +22,8 @@ pub(super) struct Begin {
     pub(super) names: Vec<String>,
     /// Line of the first row.
     pub(super) line: u64,
-    /// The numbers of each column in the first rows.
-    numbers: Vec<Vec<f64>>,
+    /// What the numbers of each column tell in the first rows.
+    seen: Vec<Seen>,
 }
 
 impl Begin {
@@ -42,7 +42,7 @@ impl Begin {
                 (Some((line, names)), Some(found)) if names == found => {
                     let rows = texts().filter_map(|(_, text)| fields(text));
                     return Some(Self {
-                        numbers: numbers(&names, rows),
+                        seen: seen(&names, rows, |text| text.parse().ok()),
                         names,
                         line,
                     });
@@ -55,16 +55,10 @@ impl Begin {
 
     /// The layout with what the first rows tell of the columns, beside what `layout` has.
     pub(super) fn told(&self, layout: Layout) -> Layout {
-        let first = |place: usize| self.numbers[place].first().copied();
-        let since_1970 = |place| Some((place, unit_since_1970(first(place)?)?));
+        let since_1970 = |place: usize| Some((place, unit_since_1970(self.seen[place].first?)?));
         Layout {
             moments: self.moments(),
-            fractional: fractional(&self.numbers),
-            seen: self
-                .numbers
-                .iter()
-                .map(|column| Seen::of_numbers(column))
-                .collect(),
+            seen: self.seen.clone(),
             since_1970: (0..self.names.len()).filter_map(since_1970).collect(),
             ..layout
         }

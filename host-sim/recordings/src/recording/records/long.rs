@@ -9,8 +9,8 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use super::named_fields::{Field, Mark, Places, names};
-use crate::recording::layout::{Keyed, Layout, SEARCHED, is_fraction, is_number, is_stamped};
+use super::named_fields::{Field, Mark, Places, names, seen};
+use crate::recording::layout::{Keyed, Layout, SEARCHED, is_number, is_stamped, number};
 use crate::recording::options::{Column, ReadOptions};
 use crate::recording::text::Text;
 use crate::recording::text::separator::{Separator, comment};
@@ -184,15 +184,12 @@ impl Begin {
                 .into_iter()
                 .collect(),
         });
-        let has_fraction = |name: &String| {
-            let mut fields = rows.iter().flat_map(|row| table.fields(row));
-            fields.any(|field| field.name == *name && is_fraction(&field.text, separator))
-        };
-        let fractional = (0..columns.len()).filter(|place| has_fraction(&columns[*place]));
+        let fields = rows.iter().map(|row| table.fields(row).collect());
+        let seen = seen(&columns, fields, |text| number(text, separator));
         Some(Self {
             layout: Layout {
                 is_stamped: is_stamped(head),
-                fractional: fractional.collect(),
+                seen,
                 keyed,
                 ..Layout::header(separator, columns, index)
             },

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use csv::ByteRecord;
 
+use crate::recording::layout::Seen;
+
 /// What a row has in the place of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Mark {
@@ -36,26 +38,23 @@ pub(crate) fn names(fields: Vec<Field>) -> Vec<String> {
     names
 }
 
-/// The numbers of each of `names` in `rows`.
-pub(crate) fn numbers(names: &[String], rows: impl Iterator<Item = Vec<Field>>) -> Vec<Vec<f64>> {
+/// What the numbers of each of `names` tell in `rows`, where `number` reads them.
+pub(crate) fn seen(
+    names: &[String],
+    rows: impl Iterator<Item = Vec<Field>>,
+    number: impl Fn(&str) -> Option<f64>,
+) -> Vec<Seen> {
     let mut numbers = vec![Vec::new(); names.len()];
     for field in rows.flatten() {
         let place = names.iter().position(|name| *name == field.name);
-        if let (Some(place), Ok(number)) = (place, field.text.parse()) {
+        if let (Some(place), Some(number)) = (place, number(&field.text)) {
             numbers[place].push(number);
         }
     }
     numbers
-}
-
-/// Places of the columns with a number that has a fraction.
-pub(crate) fn fractional(columns: &[Vec<f64>]) -> Vec<usize> {
-    let has_fraction = |place: &usize| {
-        columns[*place]
-            .iter()
-            .any(|number: &f64| number.fract() != 0.0)
-    };
-    (0..columns.len()).filter(has_fraction).collect()
+        .iter()
+        .map(|column| Seen::of_numbers(column))
+        .collect()
 }
 
 /// The places of names, and what the last row has there.

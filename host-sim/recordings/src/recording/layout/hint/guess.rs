@@ -278,7 +278,7 @@ fn time_unit(step: f64) -> Option<&'static str> {
 /// a count.
 fn angle_unit(layout: &Layout, place: usize) -> Option<&'static str> {
     let name = &layout.names[place];
-    let is_fractional = layout.fractional.contains(&place);
+    let is_fractional = layout.is_fractional(place);
     let largest = layout.seen.get(place).map_or(0.0, |seen| seen.largest);
     match is_fractional {
         true if has(name, &["turn", "odrive"]) => Some("rev"),

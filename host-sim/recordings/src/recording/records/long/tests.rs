@@ -109,7 +109,8 @@ fn errors_name_line_and_names() {
     assert!(error.contains("found: time; channel; value"), "{error}");
 }
 
-/// Rows of two motors in turn, whose numbers are in a column called `key`.
+/// Rows of two motors in turn, whose numbers are in a column called `key`. The first one turns by more than three
+/// revolutions if its positions are radians.
 fn motors(key: &str) -> String {
     let row = |k: u32| format!("0.{k:02}0,1,{}.5,7\n0.{k:02}5,2,{},8\n", 8 * k, 90 - k);
     format!(
@@ -137,7 +138,7 @@ fn numbers_of_motors_are_no_rows_of_one_shaft() {
         let error = read(&text, "").unwrap_err();
         let said = format!(
             "r.csv: line 1: each row is of one of several motors: '{key}' is 1; 2; name the columns of one motor, for \
-             example --column 't=time_s,counts_large=1.position:rad', where the unit rad is a guess"
+             example --column 't=time_s,counts_large=1.position:deg', where the unit deg is a guess"
         );
         assert_eq!(error, said);
         let one = read(
@@ -151,7 +152,7 @@ fn numbers_of_motors_are_no_rows_of_one_shaft() {
         // Neither the project's own name nor a name of the table is that of one shaft.
         let error = read(&text.replace("position", "counts_large"), "t=time_s").unwrap_err();
         assert!(
-            error.contains("counts_large=1.counts_large:rad'"),
+            error.contains("counts_large=1.counts_large:deg'"),
             "{error}"
         );
         let error = read(&text, "t=time_s,counts_large=position:counts").unwrap_err();
