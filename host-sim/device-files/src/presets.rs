@@ -44,7 +44,7 @@ impl PlantKind {
 const MOTORS: [&str; 2] = ["large", "handle"];
 
 /// Rates of recordings, and control rates of a preset, Hz: `tune` runs on recordings too.
-pub const RATES_HZ: RangeInclusive<f64> = 10.0..=10e6;
+pub const RATES_HZ: RangeInclusive<f64> = 5.0..=10e6;
 
 /// Largest ratio of rates, or of counts per revolution, to which tuned values are scaled without a
 /// warning.

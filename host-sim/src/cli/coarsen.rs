@@ -12,6 +12,8 @@ use simulation::device::parsed_counts_per_rev;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
+use super::rates::recording_rate_help;
+
 #[derive(Debug, Args)]
 pub(super) struct Coarsen {
     /// Recording of a fine encoder, as replay reads it: t or time_s (s), counts_large or fine_count,
@@ -28,8 +30,8 @@ pub(super) struct Coarsen {
     /// file, or those that the file states]
     #[arg(long, value_name = "F", value_parser = parsed_counts_per_rev)]
     fine_counts_per_rev: Option<u32>,
-    /// Rate of the coarse recording, 10 to 100000 Hz, at most that of the fine one
-    #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0, help = recording_rate_help(
+        "Rate of the coarse recording", ", at most that of the fine one"))]
     rate: f64,
     /// Position of the coarse encoder's boundaries, coarse counts
     #[arg(long, value_name = "COUNTS", default_value_t = 0.37)]

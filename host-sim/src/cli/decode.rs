@@ -12,6 +12,7 @@ use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
 use super::page::working;
+use super::rates::recording_rate_help;
 
 #[derive(Debug, Args)]
 pub(super) struct Decode {
@@ -34,8 +35,8 @@ pub(super) struct Decode {
     /// Rate of the rows, for a capture with a row per sample and without a column of time
     #[arg(long, value_name = "HZ")]
     row_rate: Option<f64>,
-    /// Rate of the recording, 10 to 100000 Hz
-    #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0,
+        help = recording_rate_help("Rate of the recording", ""))]
     rate: f64,
     /// Counts per revolution of the encoder: four times its lines, or six times the pole pairs of Hall
     /// sensors, for a comment in the recording that

@@ -1,6 +1,7 @@
 //! Control rates of the option `--rate`: range, default, and both in help texts.
 
 use experiments::closed_loop::LOWEST_RATE_HZ;
+use recordings::recording::SLOWEST_HZ;
 use simulation::simulate::RATES_HZ;
 
 /// The default of a command that runs one rate, Hz.
@@ -20,6 +21,11 @@ pub(super) fn rate_help() -> String {
 /// Help text of a `--rate` of closed loops, with the range.
 pub(super) fn loop_rate_help() -> String {
     format!("Control rate, {LOWEST_RATE_HZ} to {} Hz", RATES_HZ.1)
+}
+
+/// Help text of a rate of recordings, `what`, with the range, and with what is `more`.
+pub(super) fn recording_rate_help(what: &str, more: &str) -> String {
+    format!("{what}, {SLOWEST_HZ} to {} Hz{more}", RATES_HZ.1)
 }
 
 /// The end of a help text: the option is repeatable, and has this default.

@@ -20,6 +20,7 @@ use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{ParameterOptions, distinct, kinds, kinds_at};
 use super::page::{self, one_to_stdout, progress};
+use super::rates::recording_rate_help;
 
 /// Default folder of the recordings.
 const DATA: &str = "tests/data/real";
@@ -37,14 +38,9 @@ pub(super) struct Real {
     #[arg(long, value_name = "C,...", value_delimiter = ',', default_value = "4096",
         value_parser = parsed_counts_per_rev)]
     counts_per_rev: Vec<u32>,
-    /// Rate of the ticks, 10 to 100000 Hz, a comma between two; recordings of a coarse encoder run at
-    /// their own rate only
-    #[arg(
-        long,
-        value_name = "HZ,...",
-        value_delimiter = ',',
-        default_value = "1000"
-    )]
+    #[arg(long, value_name = "HZ,...", value_delimiter = ',', default_value = "1000",
+        help = recording_rate_help("Rate of the ticks",
+            ", a comma between two; recordings of a coarse encoder run at their own rate only"))]
     rate: Vec<f64>,
     /// Positions of the coarse encoder's boundaries, coarse counts, a comma between two; scores are
     /// means over them [default: 0.37,0.81]

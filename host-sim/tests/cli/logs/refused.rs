@@ -213,7 +213,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "own.csv",
         "--resample 1",
-        &["--resample 1: ", "at 10 Hz or more"],
+        &["--resample 1: ", "at 5 Hz or more"],
     ),
 ];
 

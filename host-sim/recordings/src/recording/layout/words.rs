@@ -1,7 +1,7 @@
 //! Words in the names of columns.
 
 /// Parts of the names of positions, and of times.
-pub(crate) const POSITIONS: &[&str] = &["counts", "encoder", "enc", "pos", "angle", "theta"];
+pub(crate) const POSITIONS: &[&str] = &["counts", "encoder", "enc", "pos", "angle", "theta", "q"];
 pub(crate) const TIMES: &[&str] = &["time", "stamp", "ts"];
 
 /// Parts of the names of what is derived from a position.
@@ -10,8 +10,13 @@ const DERIVED: &[&str] = &["vel", "speed", "omega", "acc", "dot"];
 /// Parts of the names of positions that are no measured position of the shaft, or of another angle.
 const INDIRECT: &[&str] = &[
     "err", "target", "cmd", "command", "demand", "request", "ref", "set", "sp", "des", "goal",
-    "elec", "delta", "diff", "rate", // Electrical and desired: theta_e, theta_d.
+    "elec", "delta", "diff", "rate", "tcp", // Electrical and desired: theta_e, theta_d.
     "e", "d",
+];
+
+/// Parts of a name beside which `q` is no joint: quantities of the q axis, and parts of a quaternion.
+const NO_JOINT: &[&str] = &[
+    "i", "u", "v", "w", "x", "y", "z", "current", "curr", "voltage", "volt",
 ];
 
 /// Parts of the names of durations, which are no time of a row.
@@ -62,14 +67,17 @@ pub(crate) fn is_derived(name: &str) -> bool {
     has(name, DERIVED) || parts(name).into_iter().any(differential)
 }
 
-/// Whether `name` is that of a position that is not measured at the shaft: a target, an error, a difference, an
-/// electrical angle.
+/// Whether `name` is that of a position that is not measured at the shaft, or of none: a target, an error, a difference,
+/// an electrical angle, a quantity of the q axis.
 pub(crate) fn is_indirect(name: &str) -> bool {
     let desired = |part: String| {
         let position = part.strip_suffix('d');
         position.is_some_and(|position| POSITIONS.contains(&position))
     };
-    has(name, INDIRECT) || parts(name).into_iter().any(desired)
+    let parts = parts(name);
+    let has_part = |words: &[&str]| parts.iter().any(|part| words.contains(&part.as_str()));
+    let is_axis = has_part(&["q"]) && has_part(NO_JOINT);
+    is_axis || has(name, INDIRECT) || parts.into_iter().any(desired)
 }
 
 /// Whether `name` is that of a duration.
@@ -93,6 +101,7 @@ mod tests {
             "PosLeft",
             "actual_position",
             "wheelangle",
+            "actual_q_0",
         ] {
             assert!(has(name, POSITIONS), "{name}");
         }
@@ -131,6 +140,12 @@ mod tests {
             "refPos",
             "posErr",
             "elecAngle",
+            "target_q_0",
+            "actual_TCP_pose_0",
+            "qd",
+            "i_q",
+            "current_q",
+            "q_w",
         ] {
             assert!(is_indirect(name) && !is_derived(name), "{name}");
         }
@@ -140,6 +155,8 @@ mod tests {
             "pos_rad",
             "angle_deg",
             "EncoderLeft",
+            "actual_q_0",
+            "q1",
         ] {
             assert!(!is_indirect(name) && !is_derived(name), "{name}");
         }

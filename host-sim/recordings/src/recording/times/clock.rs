@@ -293,4 +293,14 @@ mod tests {
         );
         assert!(error.contains("not in ms, us or ns"), "{error}");
     }
+
+    /// `sleep(0.1)` in a loop makes somewhat less than 10 rows a second.
+    #[test]
+    fn rows_of_a_loop_that_sleeps_are_read() {
+        let rows = |step: f64| (0..10).map(|k| f64::from(k) * step).collect::<Vec<_>>();
+        let (hz, _) = rate(&rows(0.1035), "r.csv").unwrap();
+        assert!((hz * 0.1035 - 1.0).abs() < 1e-6);
+        let error = rate(&rows(0.21), "r.csv").unwrap_err().to_string();
+        assert!(error.contains("below 5 Hz"), "{error}");
+    }
 }

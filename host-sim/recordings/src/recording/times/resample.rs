@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn rates_out_of_reach_are_refused() {
-        for rate_hz in [0.0, -5.0, 9.0, f64::NAN, f64::INFINITY, 1e9] {
+        for rate_hz in [0.0, -5.0, 4.9, f64::NAN, f64::INFINITY, 1e9] {
             let error = uneven(false).resample(rate_hz, "r").unwrap_err();
             assert!(error.to_string().starts_with("--resample "), "{error}");
         }
