@@ -27,8 +27,8 @@ pub(crate) struct Order {
 
 /// The commands of a session, and the questions after them for the counts of what the board rejected.
 ///
-/// Answers come in the order of the questions, but one may be lost, and one may answer several questions. An answer is
-/// taken as that to the oldest question, whose commands it covers in every case. Counts that grow may be those of every
+/// Answers come in the order of the questions, but one may be lost. An answer is taken as that to the oldest question,
+/// whose commands it covers in every case. Counts that grow may be those of every
 /// command that waits. A question without an answer is asked again after [`AGAIN`], and once more after the longest wait
 /// for an answer: older ones are lost then.
 pub(crate) struct Sent {

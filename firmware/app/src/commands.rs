@@ -89,10 +89,10 @@ impl<'q> Commands<'q> {
     }
 
     /// Takes bytes of a channel from `next` until it has none, at most 64, while the queue has room
-    /// for a message.
+    /// for a message and nobody has asked for the identity: each such question has an answer of its own.
     pub fn receive(&mut self, channel: Channel, mut next: impl FnMut() -> Option<u8>) {
         for _ in 0..BYTES {
-            if !self.queue.ready() {
+            if !self.queue.ready() || self.asked.identity {
                 return;
             }
             let Some(byte) = next() else {

@@ -180,6 +180,35 @@ fn identity_is_asked_once_after_the_commands_before_it() {
     assert_eq!(commands.asked(), Asked::default());
 }
 
+/// A host that has asked again counts the answers.
+#[test]
+fn each_question_for_the_identity_has_its_answer() {
+    let mut queue = Messages::new();
+    let (producer, _consumer) = queue.split();
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
+    let unknown = encode(Command::Estimator(255));
+    let question = encode(Command::Identify);
+    let mut port = [question, question, unknown, question]
+        .into_iter()
+        .flatten();
+    let mut rtt = question.into_iter();
+    let mut unknown_at = Vec::new();
+    for _ in 0..5 {
+        commands.receive(Channel::Port, || port.next());
+        commands.receive(Channel::Rtt, || rtt.next());
+        if commands.asked().identity {
+            unknown_at.push(commands.rejected().unknown);
+        }
+        // The next look begins with the other channel.
+        commands.receive(Channel::Rtt, || rtt.next());
+        commands.receive(Channel::Port, || port.next());
+        if commands.asked().identity {
+            unknown_at.push(commands.rejected().unknown);
+        }
+    }
+    assert_eq!(unknown_at, [0, 0, 0, 1]);
+}
+
 #[test]
 fn estimators_are_chosen_by_number_where_there_is_a_choice() {
     let choices = [0, 1].map(|number| messages(&[encode(Command::Estimator(number))]).len());

@@ -7,6 +7,9 @@ use crate::estimators::{Kind, Search, Setup};
 use device_files::presets::is_near;
 use simulation::simulate::RATES_HZ;
 
+/// Largest number of estimators that are named where all are concerned.
+const LISTED: usize = 4;
+
 impl Parameters {
     /// Sources of the values in order of falling priority, for messages.
     #[must_use]
@@ -18,15 +21,17 @@ impl Parameters {
     }
 
     /// One line for each preset whose values are scaled to a rate or an encoder that is far from the
-    /// tuned one: the estimators, both rates and encoders, and the remedy: a recording is tuned on at any
+    /// tuned one: the estimators, by their names unless they are many and all that have tuned values; both rates and encoders, and the remedy: a recording is tuned on at any
     /// rate, the simulated device only at those of [`RATES_HZ`].
     #[must_use]
     pub fn used_far_away(&self, kinds: &[&Kind], setup: &Setup, plant: PlantKind) -> Vec<String> {
         let mut far: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+        let mut tuned_kinds = 0;
         for kind in kinds {
             let Some((source, preset)) = self.tuned(kind, setup, plant) else {
                 continue;
             };
+            tuned_kinds += 1;
             let here = setup.stages.large.counts_per_rev;
             let counts = preset.counts_per_rev.unwrap_or(here);
             let near = is_near(preset.rate_hz, setup.rate.0)
@@ -45,11 +50,16 @@ impl Parameters {
             false => String::new(),
         };
         let line = |(tuned, names): (String, Vec<&str>)| {
+            let which = match names.len() {
+                number if number == tuned_kinds && number > LISTED => {
+                    format!("those of all {number} estimators with tuned parameters")
+                }
+                _ => names.join(", "),
+            };
             format!(
-                "parameters tuned in {tuned} are scaled to {here}, far from there: {}; to be better, tune them \
+                "parameters tuned in {tuned} are scaled to {here}, far from there: {which}; to be better, tune them \
                  with host-sim tune RECORDING{simulated}, with --device FILE.toml, and give its file as \
-                 --presets, or set values with --set",
-                names.join(", ")
+                 --presets, or set values with --set"
             )
         };
         far.into_iter().map(line).collect()
@@ -116,6 +126,20 @@ mod tests {
         assert_eq!(
             far(&shipped, &["finite-difference"], 1000.0, 90),
             Vec::<String>::new()
+        );
+        let many = [
+            "low-pass",
+            "finite-difference",
+            "pll",
+            "foaw-end-fit",
+            "foaw-best-fit",
+            "observer",
+        ];
+        let said = far(&shipped, &many, 1000.0, 90);
+        assert!(
+            said[0]
+                .contains("far from there: those of all 5 estimators with tuned parameters; to be"),
+            "{said:?}"
         );
     }
 
