@@ -46,6 +46,7 @@ pub(crate) fn follow(
             break;
         }
     }
+    course.leave(board);
     Ok(())
 }
 
@@ -178,6 +179,16 @@ impl Course {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         })
+    }
+
+    /// Tells which changes have no answer at the end.
+    fn leave(&self, board: &mut Board) {
+        let is_change = |order: &&Order| !matches!(order.command, Command::Request(_));
+        for Order { name, .. } in self.sent.orders().filter(is_change) {
+            board.note(format_args!(
+                "{name}: the session ended before the board told whether it took it; give a longer --seconds"
+            ));
+        }
     }
 
     /// Sends a command for the first or a later time. A question follows it.

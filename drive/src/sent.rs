@@ -149,7 +149,7 @@ impl Sent {
     }
 
     /// The commands that no answer covers yet, in their order.
-    fn orders(&self) -> impl Iterator<Item = &Order> {
+    pub(crate) fn orders(&self) -> impl Iterator<Item = &Order> {
         let asked = self.waiting.iter().flat_map(|question| &question.orders);
         asked.chain(&self.unasked)
     }
@@ -312,11 +312,14 @@ mod tests {
         assert!(!sent.asks(at + AGAIN + PATIENCE - ms(1)));
         assert!(sent.asks(at + AGAIN + PATIENCE));
         assert_eq!(sent.answer(&NONE).unwrap(), []);
+        assert_eq!(sent.orders().count(), 0);
         // An answer belongs to the command before it again.
         let later = at + AGAIN + PATIENCE + ms(1);
         sent.add(tune(2, 0.5));
         assert!(sent.asks(later));
+        assert!(sent.orders().eq([&tune(2, 0.5)]));
         assert_eq!(sent.answer(&noise(1)).unwrap(), [tune(2, 0.5)]);
+        assert_eq!(sent.orders().count(), 0);
         assert!(!sent.asks(later + 10 * PATIENCE), "nothing waits");
     }
 }

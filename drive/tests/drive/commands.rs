@@ -314,6 +314,22 @@ fn change_after_a_lost_answer_is_sent_again_if_it_may_be_damaged() {
     }
 }
 
+/// The answer to the question after a change would come with the next question.
+#[test]
+fn change_without_an_answer_is_told_at_the_end() {
+    let board = Board::new(Script {
+        answers_late: true,
+        ..Script::default()
+    });
+    let tune = ["select", "wall", "--tune", "stiffness=0.2@0.4"];
+    let (output, _) = board.run(&[&tune[..], &["--seconds", "0.5"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let note = "wall stiffness 0.2 N\u{b7}m/rad: the session ended before the board told whether it took it; \
+                give a longer --seconds\n";
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.starts_with(note), "{said}");
+}
+
 /// The counts of a board that has started again begin at 0.
 #[test]
 fn reset_of_the_board_is_no_refusal() {
