@@ -164,9 +164,9 @@ impl Replaced {
         let own_hz = (self.rows - 1) as f64 / duration_s;
         if (own_hz / rate_hz - 1.0).abs() > SAME_RATE {
             return Err(Failure::Input(format!(
-                "{name}: --row-rate {rate_hz}: column '{theirs}' has {} rows a second; leave the \
-                 option out, or rename the column if it is no time",
-                shown(to_digits(own_hz, 6))
+                "{name}: --row-rate {rate_hz}: column '{theirs}' has {hz} rows a second; give \
+                 --row-rate {hz} if they came at an even rate, leave the option out, or rename the column if it is no time",
+                hz = shown(to_digits(own_hz, 6))
             )));
         }
         Ok(Some(format!(
@@ -300,10 +300,9 @@ mod tests {
             ages.iter()
                 .all(|edge| (edge.unwrap().age_s - 0.2e-3).abs() < 1e-9)
         );
-        let error = read(&text, "t=t", Some(1000.0)).unwrap_err();
-        assert!(
-            error.contains("--row-rate 1000: --column names a column of time"),
-            "{error}"
-        );
+        // The options that two messages ask for, one after the other.
+        let named = read(&text, "t=t:s", Some(1000.0)).unwrap();
+        assert_eq!(named.t, recording.t);
+        assert!(named.notes.contains(&said.to_owned()), "{:?}", named.notes);
     }
 }

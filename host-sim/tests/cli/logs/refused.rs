@@ -198,12 +198,14 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "own.csv",
         "--row-rate 500",
-        &["--row-rate 500: column 't' has 1000 rows a second; leave the option out"],
+        &[
+            "--row-rate 500: column 't' has 1000 rows a second; give --row-rate 1000 if they came at an even rate, leave",
+        ],
     ),
     (
         "own.csv",
-        "--column t=t:s --row-rate 1000",
-        &["--row-rate 1000: --column names a column of time; leave one of the two out"],
+        "--column t=t:ms --row-rate 1000",
+        &["--row-rate 1000: column 't' has 1000000 rows a second; give"],
     ),
     (
         "own.csv",

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use device_files::device::COUNTS_PER_REV;
 use device_files::to_digits;
 
 use super::Encoder;
@@ -24,6 +25,9 @@ const RESOLVED: f64 = 1.5;
 
 /// Largest distance of the steps of a revolution from a whole number, over it: behind a gear it may be none.
 const WHOLE: f64 = 1e-3;
+
+/// Part of a count by which the steps of a revolution differ from a whole number where it is none.
+const PART: f64 = 0.02;
 
 /// Largest distance of the steps of a revolution from a power of two that tells the unit.
 const POWER: f64 = 0.1;
@@ -107,12 +111,30 @@ impl Encoder {
     fn by_counts(&self, step: f64, counts_per_rev: u32, given: &str) -> String {
         let steps = f64::from(counts_per_rev) / step;
         let own = steps.round();
+        if own == f64::from(counts_per_rev) && (steps - own).abs() > PART {
+            return format!(
+                "they are multiples of 1/{} revolution, to which {own} counts/rev are next",
+                shown(to_digits(steps, 8))
+            );
+        }
         if own == f64::from(counts_per_rev) {
             return "the others have the steps of the encoder: remove the rows whose position is off them; if the \
                     first row is one, all others are off"
                 .to_owned();
         }
+        let finest = f64::from(*COUNTS_PER_REV.end());
+        let halvings = (own / finest).log2().ceil().max(0.0);
+        let fits = own / halvings.exp2();
+        if halvings > 0.0 && fits == f64::from(counts_per_rev) {
+            return format!(
+                "they are multiples of 1/{own} revolution; at most {finest} counts/rev are read"
+            );
+        }
         match (steps - own).abs() < WHOLE * steps && own >= 2.0 {
+            true if halvings > 0.0 && fits.fract() == 0.0 => format!(
+                "they are multiples of 1/{own} revolution: if these are the encoder's counts, give {fits} counts/rev, \
+                 because at most {finest} are read, {given}"
+            ),
             true => format!(
                 "they are multiples of 1/{own} revolution: if these are the encoder's counts, give {own} counts/rev \
                  {given}"
@@ -135,7 +157,8 @@ fn power_of_ten(step: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::recording::read_log;
+    use super::*;
+    use crate::recording::{ReadOptions, Recording, read_log};
 
     /// What is said of a swing of 1 kHz over 1.5 revolutions whose positions are multiples of `step` in their `unit`.
     fn note(unit: &str, per_rev: f64, step: f64) -> String {
@@ -176,6 +199,45 @@ mod tests {
         // An encoder of 400 counts per revolution behind a gear of 17 to 3.
         let said = note("rev", 1.0, 3.0 / (17.0 * 400.0));
         assert!(said.contains("give 2267 counts/rev"), "{said}");
+    }
+
+    /// A drive that sends a position of 16 bits over 25 rad, and 20 bits behind a gear of 30.
+    #[test]
+    fn nearest_and_largest_counts_are_taken_where_no_others_fit() {
+        let said = |per_rev: f64, counts: u32| {
+            let mut text = "t,counts_large\n".to_owned();
+            for k in 0..1000 {
+                let t = 1e-3 * f64::from(k);
+                let position = (33_000.0 * (5.0 * t).sin()).floor() * TAU / per_rev;
+                text += &format!("{t:.3},{position:.12}\n");
+            }
+            let mut options = ReadOptions::default();
+            options
+                .add_columns("counts_large=counts_large:rad")
+                .unwrap();
+            options.counts_per_rev[0] = counts;
+            let recording = Recording::parse_as(text.as_bytes(), "r.csv", &options).unwrap();
+            recording.notes.join("\n")
+        };
+        let drive = 65_535.0 * TAU / 25.0;
+        assert!(said(drive, 4096).contains("give 16471 counts/rev"));
+        let nearest = said(drive, 16_471);
+        let rounded = "they are multiples of 1/16470.7";
+        assert!(
+            nearest.contains(rounded) && nearest.contains("to which 16471 counts/rev are next"),
+            "{nearest}"
+        );
+        let fine = said(31_457_280.0, 4096);
+        assert!(
+            fine.contains("give 3932160 counts/rev, because at most 4000000 are read, "),
+            "{fine}"
+        );
+        let halved = said(31_457_280.0, 3_932_160);
+        assert!(
+            halved.contains("1/31457280 revolution; at most 4000000 counts/rev are read"),
+            "{halved}"
+        );
+        assert!(!halved.contains("give"), "{halved}");
     }
 
     #[test]

@@ -19,6 +19,9 @@ use guess::{guesses, is_unfit, parts, positions, times};
 /// Positions that a message lists.
 const LISTED: usize = 4;
 
+/// Columns without names beyond which each line is taken for a signal.
+const WIDE: usize = 100;
+
 /// The option `--column`, with names and units.
 pub(crate) fn option(layout: &Layout, places: &Places) -> String {
     if layout.names.is_empty() {
@@ -138,6 +141,7 @@ pub(crate) fn reason(layout: &Layout, places: &Places) -> Option<String> {
         .or_else(|| labelled(layout))
         .or_else(|| frames(layout))
         .or(ambiguous)
+        .or_else(|| on_its_side(layout))
         .or_else(|| captured(layout))
         .or_else(|| levels(layout))
         .or_else(|| barred(layout))
@@ -172,6 +176,17 @@ fn labelled(layout: &Layout) -> Option<String> {
          alone, separated by commas, and the names in a line above them, for example t,counts_large",
         short(field)
     ))
+}
+
+/// Lines of so many numbers that each is a signal.
+fn on_its_side(layout: &Layout) -> Option<String> {
+    let columns = layout.names.len();
+    (!layout.has_header() && columns > WIDE).then(|| {
+        format!(
+            "there are no names but {columns} columns: if each line is a signal, exchange lines and columns, for example \
+             with numpy.savetxt('log.csv', numpy.loadtxt(FILE, delimiter=',').T, delimiter=',')"
+        )
+    })
 }
 
 /// Frames of a CAN bus as candump of can-utils prints them: `181#50FAFFFF`.
@@ -239,17 +254,22 @@ fn ambiguous(layout: &Layout, places: &Places) -> Option<String> {
     ))
 }
 
-/// Columns that a logic analyser calls by their numbers.
+/// Columns that a logic analyser calls by their numbers. SerialPlot calls any columns so.
 fn captured(layout: &Layout) -> Option<String> {
-    let is_line = |name: &&String| {
+    let has_levels = |place: usize| {
+        let seen = layout.seen.get(place);
+        seen.is_none_or(|seen| seen.largest <= 1.0 && !seen.is_fractional)
+    };
+    let is_line = |name: &str| {
         let name = name.trim().to_lowercase();
         let number = ["channel", "dio", "d"].into_iter();
         let mut number = number.filter_map(|word| name.strip_prefix(word));
         let is_number = |text: &str| text.trim().parse::<u8>().is_ok();
         name == "logic" || number.any(is_number)
     };
-    let lines = layout.names.iter().filter(is_line).count();
-    (lines >= 2).then(|| {
+    let lines = (layout.names.iter().enumerate())
+        .filter(|(place, name)| is_line(name) && has_levels(*place));
+    (lines.count() >= 2).then(|| {
         "the columns look like lines of a logic analyser; make a recording of an encoder's lines with \
          host-sim decode"
             .to_owned()

@@ -240,12 +240,7 @@ impl Layout {
             places.add_of_format(format, self);
         }
         places.leave_out_without_value(self, options);
-        if let Some(hz) = options.row_rate_hz {
-            if options.mapping(Column::T).is_some() {
-                return Err(Failure::Input(format!(
-                    "{name}: --row-rate {hz}: --column names a column of time; leave one of the two out"
-                )));
-            }
+        if options.row_rate_hz.is_some() {
             let by_name = || self.stating(Column::T, &places.columns);
             places.replaced_time = places.get(Column::T).or_else(by_name);
             places.columns.retain(|place| place.column != Column::T);

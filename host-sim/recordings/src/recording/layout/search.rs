@@ -55,7 +55,6 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
     let Some((index, separator, fields)) = first else {
         return without_numbers(lines, limit);
     };
-    let row = lines[index];
     let named = fields - usize::from(end_with(separator, &lines[index..]));
     let fits = |header: &Layout| [fields, named].contains(&header.names.len());
     let header = |(at, line): (usize, &&str)| {
@@ -100,10 +99,27 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
         return header.clone();
     }
     let misfit = latest.iter().find(|header| name_columns(&header.names));
+    let index = index + numbering(separator, &lines[index..]).unwrap_or(0);
     Layout {
         misfit: misfit.map(|header| (header.line, header.names.len())),
-        ..without_header(separator, named, (index, row))
+        ..without_header(separator, named, (index, lines[index]))
     }
+}
+
+/// How many lines below the first one the rows begin, if the first one has the numbers of the columns from 0, as pandas
+/// writes them where there are no names: the row below it begins with 0 too.
+fn numbering(separator: Separator, lines: &[&str]) -> Option<usize> {
+    let fields = separator.split(lines.first()?);
+    // Above an index of the rows there is no number.
+    let index = usize::from(fields[0].is_empty());
+    let mut numbers = fields.iter().skip(index).zip(0..);
+    if fields.len() < index + 2 || !numbers.all(|(field, number)| *field == number.to_string()) {
+        return None;
+    }
+    let mut below = lines.iter().enumerate().skip(1);
+    let (at, row) = below.find(|(_, line)| is_content(line) && comment(line).is_none())?;
+    let row = separator.split(row);
+    (row.len() == fields.len() && number(&row[0], separator) == Some(0.0)).then_some(at)
 }
 
 /// The layout of a text without a line of more than one number: the first line that is no comment is the header, or a

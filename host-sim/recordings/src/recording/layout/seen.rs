@@ -9,6 +9,9 @@ const RISES: f64 = 0.9;
 /// Fewest rows that tell.
 const FEWEST: usize = 3;
 
+/// Largest unevenness of a step, over the steps, of a time that is written beside numbers of rows.
+const EXACT: f64 = 1e-6;
+
 /// The numbers of a column in the first rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Seen {
@@ -19,7 +22,7 @@ pub(crate) struct Seen {
     pub(crate) is_fractional: bool,
     /// The median of the steps of a column that rises as a time does.
     pub(crate) step: Option<f64>,
-    /// Sum of the distances of the steps from the median, over it.
+    /// Mean distance of the steps from the median, over it.
     unevenness: f64,
 }
 
@@ -54,16 +57,32 @@ impl Seen {
         let off: f64 = steps.map(|step| (step - median).abs()).sum();
         Self {
             step: Some(median),
-            unevenness: off / median,
+            unevenness: off / median / (numbers.len() - 1) as f64,
             ..seen
         }
     }
+
+    /// Whether the numbers are those of the rows, from 0 on.
+    fn is_index(&self) -> bool {
+        self.first == Some(0.0) && self.step == Some(1.0) && self.unevenness == 0.0
+    }
+
+    /// Whether the numbers rise in even steps that are no whole numbers.
+    fn is_exact(&self) -> bool {
+        self.step.is_some() && self.is_fractional && self.unevenness < EXACT
+    }
 }
 
-/// The column among the `seen` ones that most probably is a time: it rises, with the most even steps.
+/// The column among the `seen` ones that most probably is a time: it rises, with the most even steps. Beside it, numbers
+/// of the rows are none.
 pub(super) fn time(seen: &[Seen]) -> Option<usize> {
     let rising = (0..seen.len()).filter(|place| seen[*place].step.is_some());
-    rising.min_by(|a, b| seen[*a].unevenness.total_cmp(&seen[*b].unevenness))
+    let time = rising.min_by(|a, b| seen[*a].unevenness.total_cmp(&seen[*b].unevenness))?;
+    let mut others = (0..seen.len()).filter(|place| seen[*place].is_exact());
+    match seen[time].is_index() {
+        true => others.next().or(Some(time)),
+        false => Some(time),
+    }
 }
 
 #[cfg(test)]

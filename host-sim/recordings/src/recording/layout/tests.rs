@@ -28,7 +28,7 @@ fn first_row_of_a_log_without_a_header_is_reported() {
     let rows = (0..20).map(|k| format!("{k}e-3,{k}\n"));
     let text = format!("# pandas\n0,1\n{}", rows.collect::<String>());
     let recording = read(&text, "t=1:s,counts_large=2:counts").unwrap();
-    let said = "; without a header, line 2 is the first row: '0,1'";
+    let said = "; without a header, line 3 is the first row: '0e-3,0'";
     assert!(recording.notes[0].ends_with(said), "{:?}", recording.notes);
     let recording = read(&text.replace("0,1", "t,counts_large"), "t=t").unwrap();
     assert!(!recording.notes[0].contains("header"));

@@ -1,13 +1,15 @@
 //! Times that jitter where the rows do not: a computer that stamps the rows of an even measurement.
 
 use super::mean_rate;
+use super::steps::FEW;
 use crate::recording::columns::Columns;
 
-/// Fewest rows that tell.
-const FEWEST: u64 = 100;
-
-/// Least part of these rows that fit even times better than the log's own.
+/// Least part of the rows that tell which fit even times better than the log's own.
 const SHARE: f64 = 0.75;
+
+/// Least excess of these rows over the others, in standard deviations of their number where nothing is told: 25 rows
+/// that all fit even times, or three of four of 100.
+const SURE: f64 = 5.0;
 
 /// Least difference of the two lines through the rows beside, counts: quantisation is less.
 const COUNTS: f64 = 1.0;
@@ -20,6 +22,10 @@ pub(crate) struct Jitter {
     last: [Option<(f64, u32)>; 2],
     even: u64,
     timed: u64,
+    /// Number, sum and largest of the steps, s.
+    steps: u64,
+    duration: f64,
+    longest: f64,
 }
 
 impl Jitter {
@@ -27,7 +33,13 @@ impl Jitter {
     pub(crate) fn add(&mut self, t: f64, count: u32) {
         let [first, middle] = self.last;
         self.last = [middle, Some((t, count))];
-        let (Some((t_first, first)), Some((t_middle, middle))) = (first, middle) else {
+        let Some((t_middle, middle)) = middle else {
+            return;
+        };
+        self.steps += 1;
+        self.duration += t - t_middle;
+        self.longest = self.longest.max(t - t_middle);
+        let Some((t_first, first)) = first else {
             return;
         };
         let since_first = |count: u32| f64::from(count.wrapping_sub(first) as i32);
@@ -44,15 +56,23 @@ impl Jitter {
         }
     }
 
-    /// The note on rows at a mean rate, if their counts fit even times better.
+    /// The note on rows that are mostly a period of 1/`rate_hz` apart, if their counts fit even times better. Rows that
+    /// were measured evenly came at their mean rate, unless a gap is among them.
     fn note(&self, rate_hz: f64) -> Option<String> {
-        let told = self.even + self.timed;
-        let share = self.even as f64 / told as f64;
-        let rate = mean_rate(1, 1.0 / rate_hz)?;
-        (told >= FEWEST && share >= SHARE).then(|| {
+        let told = (self.even + self.timed) as f64;
+        let share = self.even as f64 / told;
+        let is_told = share >= SHARE && (2.0 * share - 1.0) * told.sqrt() >= SURE;
+        let (part, rate) = match self.longest <= FEW / rate_hz {
+            true => ("", mean_rate(self.steps, self.duration)?),
+            false => (
+                ", for the log up to its first gap alone",
+                mean_rate(1, 1.0 / rate_hz)?,
+            ),
+        };
+        is_told.then(|| {
             format!(
                 "t jitters: in {:.0} % of the rows whose step tells, the count fits even steps better than those of t; if \
-                 the rows were measured at an even rate, give it with --row-rate {rate}",
+                 the rows were measured at an even rate, give it with --row-rate {rate}{part}",
                 100.0 * share
             )
         })
@@ -96,6 +116,33 @@ mod tests {
         let said = notes(f64::from, late, 3000.0);
         assert!(said.contains("t jitters: in 100 % of the rows"), "{said}");
         assert!(said.contains("--row-rate 1000"), "{said}");
+    }
+
+    /// A row of 50 is stamped 0.9 ms late.
+    #[test]
+    fn single_late_stamps_are_named() {
+        let said = notes(
+            f64::from,
+            |k| f64::from(k) + if k % 50 == 7 { 0.9 } else { 0.0 },
+            3000.0,
+        );
+        assert!(said.contains("t jitters: in 100 % of the rows"), "{said}");
+        // The rows themselves were late.
+        let late = |k: u32| f64::from(k) + if k % 50 == 7 { 0.9 } else { 0.0 };
+        let said = notes(late, late, 3000.0);
+        assert!(!said.contains("jitters"), "{said}");
+    }
+
+    /// Rows 1.04 ms apart whose stamps are whole milliseconds, 1999 steps in 2078 ms; and rows with a pause of 100 ms.
+    #[test]
+    fn offered_rate_is_the_mean_one_without_a_gap() {
+        let slow = |k: u32| 1.04 * f64::from(k);
+        let said = notes(slow, |k| slow(k).floor(), 3000.0);
+        assert!(said.contains("give it with --row-rate 962"), "{said}");
+        let paused = |t: f64| if t > 1000.0 { t + 100.0 } else { t };
+        let said = notes(|k| paused(f64::from(k)), |k| paused(late(k)), 3000.0);
+        let offered = "give it with --row-rate 1000, for the log up to its first gap alone";
+        assert!(said.contains(offered), "{said}");
     }
 
     #[test]

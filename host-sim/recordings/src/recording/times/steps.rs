@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::mean_rate;
 use device_files::presets::RATES_HZ;
 use device_files::to_digits;
 use terminal::failure::Failure;
@@ -27,7 +28,7 @@ const RARE: f64 = 1e-3;
 
 /// Longest step from a row to the next, and over a few missing rows, in periods.
 const NEXT: f64 = 1.5;
-const FEW: f64 = 20.0;
+pub(super) const FEW: f64 = 20.0;
 
 /// Least ratio of a step to the one before for a pause behind rows that come together.
 const RISE: f64 = 3.0;
@@ -213,10 +214,14 @@ impl Steps {
         if share <= IRREGULAR_SHARE {
             return Ok(());
         }
+        let duration = self.classes().map(|class| class.sum).sum();
+        let even = mean_rate(self.number, duration).map_or_else(String::new, |hz| {
+            format!(", or, if the rows came at an even rate, give it with --row-rate {hz}")
+        });
         Err(Failure::Input(format!(
             "{name}: column t: {:.0} % of the steps differ by more than half from the period of \
              1/{rate_hz} s, and t has steps of {} ms: late rows look as missing ones; log t with more \
-             digits, or, if t is exact and rows are missing, add --resample {rate_hz:.0}",
+             digits{even}, or, if t is exact and rows are missing, add --resample {rate_hz:.0}",
             100.0 * share,
             to_digits(1e3 * resolution, 4),
         )))

@@ -25,6 +25,29 @@ fn number_of_a_column_is_no_name_in_a_row() {
 }
 
 #[test]
+fn numbers_of_the_columns_above_the_rows_are_no_row() {
+    for (text, options) in [
+        (
+            "0,1,2\n0.0,0,5\n0.001,3,5\n0.002,6,5\n",
+            "t=1:s,counts_large=2:counts",
+        ),
+        (
+            ",0,1\n0,0.0,0\n1,0.001,3\n2,0.002,6\n",
+            "t=2:s,counts_large=3:counts",
+        ),
+    ] {
+        let recording = read(text, options).unwrap();
+        assert_eq!(counts(&recording), [0, 3, 6], "{text}");
+        assert_eq!(recording.repeated_rows, 0);
+    }
+    // A first row that looks so.
+    let recording = read("0,1,2\n1,4,2\n2,7,2\n", "t=1:ms,counts_large=2:counts").unwrap();
+    assert_eq!(counts(&recording), [1, 4, 7]);
+    let error = read(",0,1\n0,0.0,5\n1,0.001,3\n2,0.002,6\n", "").unwrap_err();
+    assert!(error.contains("--column t=2:s,counts_large=3"), "{error}");
+}
+
+#[test]
 fn single_column_has_all_rows() {
     for text in ["0\n3\n6\n", "counts\n0\n3\n6\n", "# started\n0\n3\n6\n"] {
         let recording = read_at(Some(100.0), text, "counts_large=1:counts").unwrap();
@@ -113,7 +136,7 @@ fn last_row_may_be_cut_anywhere() {
 fn column_with_the_name_of_a_time_is_compared_with_the_rate() {
     let text = "time_ms,counts\n0,0\n1,3\n2,6\n3,9\n";
     let error = read_at(Some(500.0), text, "").unwrap_err();
-    let said = "--row-rate 500: column 'time_ms' has 1000 rows a second; leave the option out";
+    let said = "--row-rate 500: column 'time_ms' has 1000 rows a second; give --row-rate 1000";
     assert!(error.contains(said), "{error}");
     let recording = read_at(Some(1000.0), text, "").unwrap();
     assert!(
