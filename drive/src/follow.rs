@@ -259,3 +259,45 @@ fn stopped(before: Option<Mode>, frame: &Frame) -> Result<(), Failure> {
         state(frame)
     )))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use drivers::encode;
+
+    use super::*;
+    use crate::board::tests::{answer, sent};
+    use crate::strokes::plan;
+    use crate::watch::tests::FRAME;
+
+    /// A session may last longer than the board may be silent.
+    #[test]
+    fn silence_begins_with_the_latest_frame() {
+        let (mut board, _end) = sent(&[]);
+        let plan = plan(None, false, 3600.0);
+        let mut course = Course::begin(&mut board, &answer(), plan).unwrap();
+        let earlier = course.heard.checked_sub(Duration::from_secs(1));
+        course.heard = earlier.expect("a clock that has run for a second");
+        let before = Instant::now();
+        assert!(course.frame(&mut board, &FRAME).unwrap().is_continue());
+        assert!(course.heard >= before);
+    }
+
+    #[test]
+    fn change_at_the_begin_is_sent_with_the_first_frame() {
+        let (mut board, end) = sent(&[]);
+        let plan = Plan {
+            changes: vec![(0.0, Change::Estimator(1)), (0.1, Change::Estimator(0))],
+            ..plan(None, true, 3600.0)
+        };
+        let mut course = Course::begin(&mut board, &answer(), plan).unwrap();
+        let armed = Frame {
+            state: Mode::Armed as u8,
+            ..FRAME
+        };
+        assert!(course.frame(&mut board, &armed).unwrap().is_continue());
+        let came: Vec<_> = end.from.try_iter().collect();
+        assert_eq!(came, [encode(Command::Estimator(1))]);
+    }
+}

@@ -141,6 +141,31 @@ mod tests {
         assert!(!has_started_again(&now, &now));
     }
 
+    /// The board may have rejected commands of one kind alone before.
+    #[test]
+    fn each_count_that_goes_back_tells_a_start() {
+        let none = Rejected::default();
+        for before in [
+            Rejected { garbage: 1, ..none },
+            Rejected {
+                not_finite: 1,
+                ..none
+            },
+            Rejected {
+                out_of_bounds: 1,
+                ..none
+            },
+            Rejected { unknown: 1, ..none },
+            Rejected {
+                unverified: 1,
+                ..none
+            },
+        ] {
+            assert!(has_started_again(&before, &none), "{before:?}");
+            assert!(!has_started_again(&none, &before), "{before:?}");
+        }
+    }
+
     #[test]
     fn bytes_that_are_no_command_are_no_refusal() {
         let before = Rejected::default();

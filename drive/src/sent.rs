@@ -322,4 +322,35 @@ mod tests {
         assert_eq!(sent.orders().count(), 0);
         assert!(!sent.asks(later + 10 * PATIENCE), "nothing waits");
     }
+
+    #[test]
+    fn question_from_before_the_session_waits_as_long_as_any_other() {
+        let at = Instant::now();
+        let mut sent = sent(1, &[], at);
+        assert!(!sent.asks(at + AGAIN), "it is not asked again");
+        sent.add(tune(1, 0.1));
+        assert!(sent.asks(at + AGAIN));
+        assert_eq!(sent.answer(&NONE).unwrap(), [], "from before");
+        assert_eq!(sent.answer(&noise(1)).unwrap(), [tune(1, 0.1)]);
+    }
+
+    #[test]
+    fn command_that_may_be_damaged_is_returned_after_its_question_is_asked_again() {
+        let at = Instant::now();
+        let (first, second) = (tune(1, 0.1), tune(2, 0.5));
+        let mut sent = sent(0, &[first.clone(), second.clone()], at);
+        // The noise may be that of the second one: the answer to the first question may be lost.
+        assert_eq!(sent.answer(&noise(1)).unwrap(), [first]);
+        assert!(sent.asks(at + AGAIN));
+        assert_eq!(sent.answer(&noise(1)).unwrap(), []);
+        assert_eq!(sent.answer(&noise(1)).unwrap(), [second]);
+    }
+
+    /// It would be sent once more after the later one.
+    #[test]
+    fn command_is_replaced_by_a_later_one_without_a_question_too() {
+        let mut sent = sent(0, &[tune(1, 0.1)], Instant::now());
+        sent.add(tune(1, 0.2));
+        assert_eq!(sent.answer(&noise(1)).unwrap(), []);
+    }
 }

@@ -105,7 +105,27 @@ fn scene_is_selected_once_though_bytes_that_are_no_command_come() {
     assert_eq!(from.try_iter().filter(|it| *it == select).count(), 1);
 }
 
-/// Counts that come without an identity are no answer to a question.
+/// Its frames do not tell the start where none came before.
+#[test]
+fn start_that_the_counts_tell_ends_a_change() {
+    let earlier = Rejected {
+        unknown: 1,
+        ..Rejected::default()
+    };
+    let hello = Hello {
+        protocol: PROTOCOL,
+        ..Hello::default()
+    };
+    let answers = [earlier, Rejected::default()].map(|counts| [hello.into(), counts.into()]);
+    let (mut board, _end) = sent(&answers.concat());
+    let said = board
+        .change(Command::Estimator(1), "estimator")
+        .unwrap_err();
+    let begin = "estimator: the board has started again; find the cause of the reset";
+    assert!(said.to_string().starts_with(begin), "{said}");
+}
+
+/// Counts that come without an identity are no answer to a question, before the first answer and after it.
 #[test]
 fn refused_scene_is_named_after_counts_without_a_question() {
     let none = Rejected::default();
@@ -113,9 +133,19 @@ fn refused_scene_is_named_after_counts_without_a_question() {
         unverified: 1,
         ..none
     };
-    let messages = [none.into(), Hello::default().into(), now.into()];
+    let identity = Message::from(Hello::default());
+    let messages = [
+        none.into(),
+        identity,
+        none.into(),
+        none.into(),
+        identity,
+        now.into(),
+    ];
     let (mut board, PipeEnd { to, from: _from }) = sent(&messages);
     drop(to);
+    // A question from before the session.
+    board.send(Command::Identify).unwrap();
     let plan = plan(Some(SceneKind::Wall), true, LONG);
     let ended = follow(&mut board, &answer(), plan, &mut |_| ());
     let said = format!("scene wall: the board refuses it: {UNVERIFIED}");
