@@ -67,14 +67,25 @@ pub(crate) fn by_hand(board: &mut Board, answer: &Answer) -> Result<Vec<Index>, 
          amplifiers are disabled",
         PART_S * PARTS as f64
     ));
+    let pulses = until_turned(|| {
+        let seen = observe(board, answer, plan(None, false, PART_S))?;
+        Ok(seen.indices)
+    })?;
+    board.note(format_args!("take your hands off the device"));
+    Ok(pulses)
+}
+
+/// The pulses of one part of the time after the other, until both shafts have made a turn or the time is over.
+fn until_turned(
+    mut part: impl FnMut() -> Result<Vec<Index>, Failure>,
+) -> Result<Vec<Index>, Failure> {
     let mut pulses = Vec::new();
     for _ in 0..PARTS {
-        pulses.extend(observe(board, answer, plan(None, false, PART_S))?.indices);
+        pulses.extend(part()?);
         if have_turned(&pulses) {
             break;
         }
     }
-    board.note(format_args!("take your hands off the device"));
     Ok(pulses)
 }
 
@@ -266,6 +277,26 @@ mod tests {
         assert!(!have_turned(&seen) && !have_turned(&turn_of_small()));
         seen.extend(turn_of_small());
         assert!(have_turned(&seen));
+    }
+
+    /// One shaft is turned after the other, in parts of the time.
+    #[test]
+    fn no_part_is_awaited_after_the_turns_of_both_shafts() {
+        let large = pulses(&[(1, 10), (2, 10 + N)]);
+        let parts = [vec![], large, vec![], turn_of_small().into()];
+        let mut left = parts.into_iter();
+        let found = until_turned(|| Ok(left.next().expect("no part more")));
+        assert!(have_turned(&found.unwrap()));
+    }
+
+    #[test]
+    fn time_for_turns_ends_without_one() {
+        let mut parts = 0;
+        let found = until_turned(|| {
+            parts += 1;
+            Ok(Vec::new())
+        });
+        assert_eq!((found, parts), (Ok(Vec::new()), PARTS));
     }
 
     #[test]

@@ -56,6 +56,27 @@ fn turns_of_the_device_file_pass() {
     }
 }
 
+/// The motors move the device later.
+#[test]
+fn hands_are_sent_to_the_shafts_and_away_from_them() {
+    let board = Board::new(Script {
+        turns: Some(stated()),
+        ..Script::default()
+    });
+    let (output, _) = board.run(&["bring-up", "--turns"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    let begins = [
+        "turn the shafts of both motors by hand, ",
+        "take your hands off the device",
+        "leave the handle free and do not touch it: ",
+    ];
+    let lines: Vec<_> = said.lines().take(begins.len()).collect();
+    assert_eq!(lines.len(), begins.len(), "{said}");
+    for (line, begin) in lines.iter().zip(begins) {
+        assert!(line.starts_with(begin), "{said}");
+    }
+}
+
 #[test]
 fn wrong_turns_by_hand_end_the_bring_up() {
     let [large, small] = stated();
