@@ -271,6 +271,32 @@ mod tests {
         }
     }
 
+    /// One shaft out of its bounds ends the strokes of both motors.
+    #[test]
+    fn strokes_that_are_short_for_one_motor_give_both_other_zeros() {
+        let mut seen = seen(|_, command| 0.02 + command);
+        assert_eq!(with_zeros(&seen, &Settings::DEFAULT), Settings::DEFAULT);
+        for (frame, measured) in seen.frames.iter_mut().zip(&mut seen.measured).skip(100) {
+            (frame.current_small, measured.small) = (0.0, 0.02);
+        }
+        let zeros = zeros(&with_zeros(&seen, &Settings::DEFAULT));
+        // 0.02 A over a full scale of 6 A and of 1.5 A has 7 and 27 of 2047 codes.
+        assert_eq!(zeros.map(|it| it.value), [2048.0 - 7.0, 2048.0 - 27.0]);
+    }
+
+    /// A zero of the repeated strokes is no zero of before.
+    #[test]
+    fn line_tells_the_settings_of_before_the_procedure() {
+        let fit = Fit::of(&seen(|_, command| command), &CHANNELS[0]).unwrap();
+        let mut present = Settings::DEFAULT;
+        assert!(present.set(Setting::ZeroLarge, 2036.0) && present.set(Setting::GainLarge, 1.1));
+        let mut before = present;
+        assert!(before.set(Setting::ZeroLarge, 2040.0));
+        let (text, _) = calibrated(fit, &CHANNELS[0], &present, &before).unwrap();
+        let end = "; zero-large 2040 to 2036, gain-large 1.1 to 1.1";
+        assert!(text.ends_with(end), "{text}");
+    }
+
     #[test]
     fn settings_out_of_bounds_are_refused() {
         let [large, small] = found([(1840.0, 1.0), (2048.0, 1.3)], &Settings::DEFAULT);

@@ -185,6 +185,27 @@ fn short_strokes_are_repeated_once_with_other_zeros_which_a_failure_undoes() {
     );
 }
 
+/// The second change arrives damaged each time: one output would have its new zero with its old gain.
+#[test]
+fn change_that_fails_undoes_those_before() {
+    let board = Board::new(Script {
+        damages: (2, 5),
+        ..script(MEASURES)
+    });
+    let (output, commands) = board.run(&["calibrate", "--store"]);
+    let [_, said] = text(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(": sent 4 times, and not certain"), "{said}");
+    assert!(!commands.contains(&Command::Store), "{commands:?}");
+    let undone = [
+        ZEROS[0],
+        set(Setting::GainLarge, 1.1),
+        ZEROS[1],
+        set(Setting::GainSmall, 1.0),
+    ];
+    assert!(sets(commands).ends_with(&undone), "{said}");
+}
+
 /// The repeated strokes end with a fault of the board here.
 #[test]
 fn stop_in_the_repeated_strokes_undoes_the_other_zeros() {
@@ -265,6 +286,7 @@ fn failed_bring_up_takes_back_that_the_signs_are_verified() {
 fn bring_up_names_settings_that_allow_no_current_and_arms_nothing() {
     for (setting, told) in [
         (Setting::CurrentScale, "0 mA of the large motor"),
+        (Setting::LimitLarge, "0 mA of the large motor"),
         (Setting::LimitSmall, "0 mA of the small motor"),
     ] {
         let mut settings = Settings::COMMISSIONED;
@@ -287,6 +309,27 @@ fn bring_up_names_settings_that_allow_no_current_and_arms_nothing() {
     }
 }
 
+/// It passes no check, and no further step moves its motors.
+#[test]
+fn board_that_stays_enabled_after_a_step_ends_the_bring_up() {
+    let board = Board::new(Script {
+        disarms_after: None,
+        measures: Some([(0.0, 1.0); 2]),
+        ..Script::default()
+    });
+    let (output, commands) = board.run(&["bring-up", "--timeout", "4"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let lines = String::from_utf8(output.stdout).unwrap();
+    let last = lines.lines().last().expect("a line");
+    assert!(
+        last.starts_with("FAIL  armed, no scene ")
+            && last.contains("stay enabled after disarm; switch off their supply"),
+        "{lines}"
+    );
+    let is_select = |it: &Command| matches!(it, Command::Request(Request::Select(_)));
+    assert!(!commands.iter().any(is_select), "{commands:?}");
+}
+
 #[test]
 fn image_without_monitors_is_left_alone() {
     let (output, commands) = Board::new(Script::default()).run(&["calibrate"]);
@@ -307,8 +350,12 @@ fn bring_up_has_a_line_for_each_measured_current() {
         ([(0.0, 0.5), (0.0, 1.0)], ["FAIL", "pass"]),
         ([(0.0, 1.0), (0.1, 1.0)], ["pass", "FAIL"]),
     ] {
-        let (output, _) = board(measures).run(&["bring-up"]);
+        let (output, commands) = board(measures).run(&["bring-up"]);
         let [shown, _] = text(&output);
+        // Armed once without a scene.
+        let verified = set(Setting::SignsVerified, 0.0);
+        let expected = [DISARM, verified, ARM, DISARM, ARM, EXCITE, DISARM];
+        assert_eq!(deduplicated(sorted(&commands).0), expected);
         let lines: Vec<_> = shown.lines().collect();
         let names = ["current, large motor", "current, small motor"];
         for ((line, begin), name) in lines[3..].iter().zip(begins).zip(names) {

@@ -159,15 +159,14 @@ impl<'a> Player<'a> {
                 self.selections += 1;
             }
             Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
-                self.values += 1;
-                let (first, last) = self.script.damages;
-                match (first..=last).contains(&self.values) {
-                    true => self.rejected.garbage += 12,
-                    false => self.rejected.out_of_bounds += u32::from(self.script.refuses),
+                if self.value_arrives() {
+                    self.rejected.out_of_bounds += u32::from(self.script.refuses);
                 }
             }
             Command::Set { setting, value } => {
-                if let Some(setting) = Setting::from_number(setting) {
+                if self.value_arrives()
+                    && let Some(setting) = Setting::from_number(setting)
+                {
                     self.settings.set(setting, value);
                 }
             }
@@ -187,6 +186,16 @@ impl<'a> Player<'a> {
             }
             Command::Request(_) => {}
         }
+    }
+
+    /// Whether the next command with a value arrives as it was sent.
+    fn value_arrives(&mut self) -> bool {
+        self.values += 1;
+        let (first, last) = self.script.damages;
+        let is_damaged = (first..=last).contains(&self.values);
+        // The bytes of a command.
+        self.rejected.garbage += if is_damaged { 12 } else { 0 };
+        !is_damaged
     }
 
     /// The identity, with the features of the script.
