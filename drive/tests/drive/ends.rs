@@ -6,7 +6,7 @@ use std::process::{Child, Command as Process, Stdio};
 use std::time::Duration;
 
 use drivers::{Command, Setting, Settings};
-use haptic_control::{Mode, Stop};
+use haptic_control::{Mode, Request, SceneKind, Stop};
 
 use crate::commands::{ARM, DISARM, WALL, deduplicated, sorted};
 use crate::scripted::{Board, Script, error};
@@ -15,6 +15,14 @@ use crate::scripted::{Board, Script, error};
 const BRIEFLY: [&str; 2] = ["--timeout", "4"];
 /// A session that ends later than by the reason that a test gives it.
 const SELECT: [&str; 4] = ["select", "wall", "--seconds", "10"];
+
+/// Sends a signal to the tool.
+#[cfg(unix)]
+fn send(tool: &Child, signal: &str) {
+    let id = tool.id().to_string();
+    let sent = Process::new("kill").args([signal, &id]).status().unwrap();
+    assert!(sent.success());
+}
 
 #[cfg(unix)]
 #[test]
@@ -28,14 +36,29 @@ fn interrupt_and_termination_disarm() {
             .spawn()
             .unwrap();
         board.wait_for(WALL);
-        let id = tool.id().to_string();
-        let killed = Process::new("kill").args([signal, &id]).status().unwrap();
-        assert!(killed.success());
+        send(&tool, signal);
         let output = tool.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{signal}: {output:?}");
         let (others, _) = sorted(&board.commands());
         assert_eq!(deduplicated(others), [DISARM], "{signal}");
     }
+}
+
+/// The wait for it may be long.
+#[cfg(unix)]
+#[test]
+fn interrupt_ends_the_wait_for_a_board_that_does_not_arm() {
+    let board = Board::new(Script {
+        armed: Mode::Safe,
+        ..Script::default()
+    });
+    let tool = board.tool(&SELECT).stderr(Stdio::piped()).spawn().unwrap();
+    board.wait_for(ARM);
+    send(&tool, "-INT");
+    let output = tool.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    // No scene is selected.
+    assert_eq!(deduplicated(sorted(&board.commands()).0), [DISARM]);
 }
 
 /// As with `| head -1`.
@@ -85,6 +108,7 @@ fn stop_of_the_board_ends_the_session_with_its_cause_and_disarms() {
             "state armed, cause command-timeout",
         ),
         (Mode::Boot, Stop::None, "state boot, cause none"),
+        (Mode::Settling, Stop::None, "state settling, cause none"),
     ] {
         let board = Board::new(Script {
             stop: Some((100, mode, stop)),
@@ -148,9 +172,17 @@ fn connection_that_closes_gets_a_disarm() {
             &[][..],
         ),
         (&SELECT, WALL, &[ARM, WALL, DISARM]),
+        (&["disarm"], DISARM, &[DISARM]),
     ] {
         let board = Board::new(Script {
             hang_up: Some((from, 500)),
+            // A board that is not disarmed before it closes.
+            begin: if from == DISARM {
+                Mode::Running
+            } else {
+                Mode::Boot
+            },
+            disarms_after: None,
             ..Script::default()
         });
         let (output, commands) = board.run(arguments);
@@ -215,6 +247,19 @@ fn scene_that_does_not_start_is_told_and_disarmed() {
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(error(&output).contains("the scene does not start: state armed, cause none"));
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, WALL, DISARM]);
+}
+
+/// The board stays armed.
+#[test]
+fn scene_off_has_no_start_to_wait_for() {
+    let board = Board::new(Script {
+        starts_after: None,
+        ..Script::default()
+    });
+    let (output, commands) = board.run(&["select", "off", "--seconds", "0.2"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let off = Command::Request(Request::Select(SceneKind::Off.number()));
+    assert_eq!(deduplicated(sorted(&commands).0), [ARM, off, DISARM]);
 }
 
 /// The tool would take the frames of the scene that runs for those of its own.
@@ -327,9 +372,7 @@ fn killed_bring_up_leaves_no_earlier_verification() {
 #[test]
 fn interrupted_bring_up_fails_no_check_and_verifies_nothing() {
     let (board, tool) = armed_bring_up();
-    let id = tool.id().to_string();
-    let killed = Process::new("kill").args(["-INT", &id]).status().unwrap();
-    assert!(killed.success());
+    send(&tool, "-INT");
     let output = tool.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let [lines, said] = [output.stdout, output.stderr].map(|it| String::from_utf8(it).unwrap());
