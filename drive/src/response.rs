@@ -100,12 +100,12 @@ fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> Option<[f64; 3]> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A motor with gain 800, coupling 60 and friction 90, against another side that turns by itself,
     /// integrated exactly within each millisecond's steps of 10 us.
-    fn motion(gain: f64, coupling: f64) -> [Vec<f64>; 3] {
+    pub(crate) fn motion(gain: f64, coupling: f64) -> [Vec<f64>; 3] {
         let (mut angle, mut omega, mut coupled) = (0.0, 0.0, 0.0);
         let mut all = [Vec::new(), Vec::new(), Vec::new()];
         for k in 0..3000 {
@@ -152,6 +152,15 @@ mod tests {
     fn rest_and_short_motions_have_no_response() {
         let still = [vec![0.0; 3000], vec![0.0; 3000], vec![0.1; 3000]];
         assert_eq!(response(&still), None);
+        // A constant current and friction of one direction are not told apart.
+        let omega = |k: usize| 3.0 + (0.02 * k as f64).sin();
+        let turned = (0..3000).scan(0.0, |angle, k| {
+            *angle += 1e-3 * omega(k);
+            Some(*angle)
+        });
+        let other = (0..3000).map(|k| (0.05 * f64::from(k)).cos());
+        let steady = [turned.collect(), other.collect(), vec![0.1; 3000]];
+        assert_eq!(response(&steady), None);
         let short = motion(800.0, 60.0).map(|list| list[..100].to_vec());
         assert_eq!(response(&short), None);
     }

@@ -123,6 +123,37 @@ fn judged(found: String, ratio: f64) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::response::tests::motion;
+    use crate::watch::tests::FRAME;
+
+    /// A handle that moves as the device file says beside a large motor without a current. The coupler is judged where
+    /// both motors pass alone.
+    #[test]
+    fn frames_after_lost_ones_and_a_coupler_beside_a_failed_motor_are_left_out() {
+        let gain = DEVICE.small.torque_constant / DEVICE.small.inertia;
+        let [angle, coupled, current] = motion(gain, DEVICE.damping / DEVICE.small.inertia);
+        let counts = |angle: f64, per_turn: u32| {
+            let counts = (angle / TAU * f64::from(per_turn)).round();
+            (counts as i32).cast_unsigned()
+        };
+        let frame = |k: usize| Frame {
+            seq: k as u32,
+            counts_large: counts(coupled[k], DEVICE.large.counts_per_rev),
+            counts_small: counts(angle[k], DEVICE.small.counts_per_rev),
+            current: 0.0,
+            current_small: current[k] as f32,
+            ..FRAME
+        };
+        let seen = Seen {
+            frames: (0..2000).chain(2300..3000).map(frame).collect(),
+            ..Seen::default()
+        };
+        let lines = motors("", &seen);
+        let [("large motor", Err(said)), ("small motor", Ok(_))] = &lines[..] else {
+            panic!("{lines:?}");
+        };
+        assert!(said.contains("check the motor's leads"), "{said}");
+    }
 
     #[test]
     fn signs_and_sizes_of_responses_are_judged() {
