@@ -302,6 +302,21 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn bounds_of_the_own_device_are_known_without_a_board() {
+        let check = |value| {
+            let tuning = Tuning::new(SceneKind::Wall, "stiffness", value).unwrap();
+            tuning.check_own().map_err(|it| it.to_string())
+        };
+        let unit = Quantity::Stiffness.unit();
+        assert_eq!(check(BOUNDS.stiffness), Ok(()));
+        for value in [1.01 * BOUNDS.stiffness, -0.01] {
+            let said = check(value).unwrap_err();
+            let end = format!("out of bounds; give 0 to {} {unit}", BOUNDS.stiffness);
+            assert!(said.ends_with(&end), "{said}");
+        }
+    }
+
+    #[test]
     fn number_of_detents_is_whole() {
         let check = |value| {
             let tuning = Tuning::new(SceneKind::Detents, "per-turn", value).unwrap();

@@ -226,6 +226,28 @@ mod tests {
         assert_eq!(stored(&[]).unwrap_err().status(), 2);
     }
 
+    #[test]
+    fn table_has_value_unit_and_range_of_each_setting() {
+        let messages = Setting::ALL.iter().map(|setting| {
+            Message::Setting(link::Setting {
+                number: setting.number(),
+                value: Settings::DEFAULT.get(*setting),
+                count: Setting::ALL.len() as u8,
+            })
+        });
+        let (mut board, _end) = sent(&messages.collect::<Vec<_>>());
+        let table = table(&mut board).unwrap();
+        assert_eq!(table.lines().count(), Setting::ALL.len(), "{table}");
+        for begin in [
+            "zero-large      2048 codes    1848 to 2248: ",
+            // A ratio has no unit.
+            "gain-small      1             0.8 to 1.25: ",
+        ] {
+            let has_it = table.lines().any(|line| line.starts_with(begin));
+            assert!(has_it, "{begin}: {table}");
+        }
+    }
+
     /// The value of each setting is its number, and a hundred more in an older answer.
     #[test]
     fn values_keep_their_numbers_if_messages_are_lost() {

@@ -104,7 +104,10 @@ mod tests {
             at("stiffness=0.2@1.5"),
             Ok((1.5, "stiffness=0.2".to_owned()))
         );
-        assert_eq!(at("stiffness=0.2"), Ok((0.0, "stiffness=0.2".to_owned())));
+        for at_once in ["stiffness=0.2", "stiffness=0.2@0"] {
+            assert_eq!(at(at_once), Ok((0.0, "stiffness=0.2".to_owned())));
+        }
+        assert_eq!(at("a@b=1@2"), Ok((2.0, "a@b=1".to_owned())));
         for wrong in ["a=1@", "a=1@x", "a=1@-1", "a=1@nan", "a=1@inf"] {
             assert!(at(wrong).is_err(), "{wrong}");
         }

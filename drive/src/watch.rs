@@ -104,7 +104,7 @@ pub(crate) mod tests {
         estimator: 1,
         overruns: 3,
         drops: 4,
-        rtt_drops: 4,
+        rtt_drops: 6,
         cycles: 900,
     };
 

@@ -138,6 +138,22 @@ fn tune_and_estimator_change_a_board_without_arming_it() {
     );
 }
 
+/// Settings are shown, and until the next reset only those last that were changed.
+#[test]
+fn settings_that_stay_as_they_are_say_nothing_of_the_next_reset() {
+    for (arguments, said) in [
+        (&["settings"][..], ""),
+        (
+            &["settings", "serial=7"],
+            "until the next reset; --store keeps them\n",
+        ),
+    ] {
+        let (output, _) = board().run(arguments);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert_eq!(String::from_utf8_lossy(&output.stderr), said);
+    }
+}
+
 #[test]
 fn watch_sends_questions_alone() {
     let (output, commands) = board().run(&["watch", "--every", "0.1", "--seconds", "1"]);

@@ -250,5 +250,8 @@ fn help_names_scenes_parameters_and_estimators() {
         // Lines are wrapped.
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words(&text).contains(&words(said)), "{text}");
+        // Nothing of a scene lasts that has no parameter, or only the set-point of the torque.
+        let nothing_lasts = |line: &str| ["off", "torque torque"].contains(&&*words(line));
+        assert!(!text.lines().any(nothing_lasts), "{text}");
     }
 }

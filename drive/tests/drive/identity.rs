@@ -1,7 +1,7 @@
 //! Identity of a board, and boards of another protocol.
 
 use drivers::Command;
-use drivers::link::{Hello, PROTOCOL};
+use drivers::link::{Features, Hello, PROTOCOL};
 use haptic_control::Request;
 
 use crate::scripted::{Board, Script, error};
@@ -46,11 +46,13 @@ fn info_has_every_property_even_among_noise_and_half_frames() {
 }
 
 #[test]
-fn info_names_a_device_that_is_not_the_one_of_the_tool() {
+fn info_names_a_device_and_presets_that_are_not_those_of_the_tool() {
     let script = Script::default();
     let board = Board::new(Script {
         hello: Hello {
             device: 1,
+            presets: 2,
+            features: Features::default(),
             brown_out_reset: false,
             ..script.hello
         },
@@ -58,8 +60,13 @@ fn info_names_a_device_that_is_not_the_one_of_the_tool() {
     });
     let (output, _) = board.run(&["info"]);
     let text = String::from_utf8(output.stdout).unwrap();
-    let line = text.lines().find(|line| line.starts_with("device"));
-    assert!(line.unwrap().contains("00000001; this tool is built for"));
+    for said in [
+        "device             00000001; this tool is built for ",
+        "presets            00000002; this tool is built for ",
+        "features           none\n",
+    ] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
     assert!(text.contains("reset below 2.7 V  no\n"), "{text}");
 }
 
