@@ -239,6 +239,6 @@ mod tests {
         assert!(is_at_rest(|seq| (seq as i32 % 3 - 1, i32::MIN), 1000));
         assert!(!is_at_rest(|seq| (seq as i32 % 4 - 1, 0), 1000));
         assert!(!is_at_rest(|seq| (0, seq as i32 % 4 - 2), 1000));
-        assert!(!is_at_rest(|_| (0, 0), 50));
+        assert!(is_at_rest(|_| (0, 0), 100) && !is_at_rest(|_| (0, 0), 99));
     }
 }

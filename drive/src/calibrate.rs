@@ -262,11 +262,10 @@ mod tests {
                 assert!((zero - real[motor].0).abs() < most, "{new:?}");
                 let most = most / [80.0, 160.0][motor];
                 assert!((gain - real[motor].1).abs() < most, "{new:?}");
-                // Hundredths of a code.
-                assert!(
-                    (zero * 100.0 - (zero * 100.0).round()).abs() < 0.05,
-                    "{new:?}"
-                );
+                // Hundredths of a code, and ten thousandths of a gain.
+                for steps in [zero * 100.0, gain * 10_000.0] {
+                    assert!((steps - steps.round()).abs() < 0.05, "{new:?}");
+                }
             }
         }
     }

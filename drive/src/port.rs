@@ -330,6 +330,20 @@ mod tests {
         assert!(said(ErrorKind::NotFound).ends_with("cargo drive list shows the ports"));
     }
 
+    /// A signal interrupts a read.
+    #[test]
+    fn nothing_that_came_and_a_signal_are_no_lost_connection() {
+        let is_silent = |kind: ErrorKind| is_silence(&kind.into());
+        for kind in [
+            ErrorKind::TimedOut,
+            ErrorKind::WouldBlock,
+            ErrorKind::Interrupted,
+        ] {
+            assert!(is_silent(kind), "{kind}");
+        }
+        assert!(!is_silent(ErrorKind::ConnectionReset) && !is_silent(ErrorKind::BrokenPipe));
+    }
+
     /// The name localhost may be that of an address without a server too.
     #[test]
     fn connection_is_to_the_address_that_has_a_server() {

@@ -1,5 +1,6 @@
 //! Tests of waits and sessions.
 
+use std::sync::mpsc::channel;
 use std::thread::sleep;
 
 use drivers::link::LONGEST;
@@ -103,6 +104,18 @@ fn scene_is_selected_once_though_bytes_that_are_no_command_come() {
     assert!(follow(&mut board, &answer(), plan, &mut |_| ()).is_err());
     let select = encode(Command::Request(Request::Select(SceneKind::Wall.number())));
     assert_eq!(from.try_iter().filter(|it| *it == select).count(), 1);
+}
+
+/// A program that shows the lines itself has no terminal.
+#[test]
+fn listener_gets_results_and_notes_in_their_order() {
+    let (mut board, _end) = sent(&[]);
+    let (to, heard) = channel();
+    board.speak_to(Box::new(move |line| to.send(line).unwrap()));
+    board.note("leave the handle free");
+    board.print("pass  at rest").unwrap();
+    let lines: Vec<_> = heard.try_iter().collect();
+    assert_eq!(lines, ["leave the handle free", "pass  at rest"]);
 }
 
 /// Its frames do not tell the start where none came before.

@@ -159,9 +159,13 @@ fn offset_at_rest_is_the_mean_of_fifty_pairs_at_least() {
     let mut seen = seen(|_, command| 0.02 + 0.9 * command);
     let offset = offset_at_rest(&seen, &CHANNELS[0]).expect("an offset");
     assert!((offset - 0.02).abs() < 1e-6);
-    // Four blocks at rest have 32 pairs.
-    seen.frames.truncate(300);
-    assert_eq!(offset_at_rest(&seen, &CHANNELS[0]), None);
+    // The seventh block at rest begins at frame 540, and the fifth frame of a block ends its first pair: six blocks
+    // have 48 pairs.
+    for (frames, is_enough) in [(546, true), (545, false)] {
+        seen.frames.truncate(frames);
+        let offset = offset_at_rest(&seen, &CHANNELS[0]);
+        assert_eq!(offset.is_some(), is_enough, "{frames}");
+    }
 }
 
 #[test]
