@@ -66,7 +66,7 @@ pub(crate) fn option(layout: &Layout, places: &Places) -> String {
 }
 
 /// The value of `--column` for columns without names: the time is a time since 1970 in the first row, or the column that
-/// rises most evenly, and the position the next number.
+/// rises most evenly, and the position the next number that changes.
 fn numbered(layout: &Layout) -> String {
     let fields = layout.separator.split(&layout.first_row);
     let is_number = |place: usize| {
@@ -93,10 +93,16 @@ fn numbered(layout: &Layout) -> String {
             (place, format!("{}:{unit}", place + 1))
         }
     };
-    last = (last + 1..layout.names.len())
-        .chain(0..last)
-        .find(|place| is_number(*place))
-        .unwrap_or(last + 1);
+    let mut numbers: Vec<_> = (last + 1..layout.names.len()).chain(0..last).collect();
+    numbers.retain(|place| is_number(*place));
+    let changes = |place: &&usize| {
+        layout
+            .seen
+            .get(**place)
+            .is_some_and(|seen| !seen.is_constant)
+    };
+    let position = numbers.iter().find(changes).or(numbers.first());
+    last = position.copied().unwrap_or(last + 1);
     let unit = of_unit(guessed_unit(layout, Quantity::Position, last));
     let position = last + 1;
     format!(

@@ -20,6 +20,8 @@ pub(crate) struct Seen {
     pub(crate) largest: f64,
     /// Whether a number has a fraction.
     pub(crate) is_fractional: bool,
+    /// Whether all numbers are one: that of a device, or what was not used.
+    pub(crate) is_constant: bool,
     /// The median of the steps of a column that rises as a time does.
     pub(crate) step: Option<f64>,
     /// Mean distance of the steps from the median, over it.
@@ -43,6 +45,7 @@ impl Seen {
             first: numbers.first().copied(),
             largest: numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs())),
             is_fractional: numbers.iter().any(|x| x.fract() != 0.0),
+            is_constant: numbers.windows(2).all(|pair| pair[0] == pair[1]),
             ..Self::default()
         };
         let steps = numbers.windows(2).map(|pair| pair[1] - pair[0]);

@@ -70,6 +70,11 @@ fn columns_without_names_are_proposed_by_their_first_numbers() {
             "t=1:s,counts_large=2:rad, where the units s and rad are guesses; read",
         ),
         (
+            // The number of the device stays.
+            "0.5,3,1.25\n0.75,3,2\n",
+            "t=1:s,counts_large=3:rad, where the units s and rad are guesses; read",
+        ),
+        (
             "1700000000123,a,7\n1700000000124,a,8\n",
             "t=1:ms,counts_large=3:counts, where the unit counts is a guess; read",
         ),

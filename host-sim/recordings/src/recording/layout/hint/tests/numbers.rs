@@ -53,7 +53,7 @@ fn time_without_a_name_is_the_column_that_rises_most_evenly() {
         ),
         (
             &|k: u32| format!("{}\t{}\t{}\t{}", 20_000 * k, 3, k % 5, k % 7),
-            "--column t=1:us,counts_large=2:counts, where",
+            "--column t=1:us,counts_large=3:counts, where",
         ),
     ] {
         let error = read(&rows("", row), "").unwrap_err();
