@@ -136,7 +136,7 @@ def decode(
         A file of a logic analyser: a table (CSV) where a row has the levels 0 or 1 of the lines from its time
         on, or a value change dump (VCD). It may be compressed by gzip.
     rate
-        Rate of the rows of the recording, Hz, from 10 to 100000.
+        Rate of the rows of the recording, Hz, from 5 to 100000.
     lines
         Names or numbers, from 1, of the columns of the lines A and B [default: the only two columns that are
         no time]. In the other order counts have the other sign.

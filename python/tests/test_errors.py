@@ -72,8 +72,8 @@ def replay(**arguments):
         ({"counts_per_rev": 3}, ["counts_per_rev=3: must be from 16 to 4000000"]),
         ({"device": {"large": {"inertia": 1}}}, ["device: ", "inertia"]),
         ({"resample": -5}, ["resample=-5"]),
-        ({"rate": 5}, ["recording: rate=5: must be from 10 to 10000000 Hz"]),
-        ({"rate": 1e30}, ["must be from 10 to 10000000 Hz"]),
+        ({"rate": 4}, ["recording: rate=4: must be from 5 to 10000000 Hz"]),
+        ({"rate": 1e30}, ["must be from 5 to 10000000 Hz"]),
         ({"rate": 50}, ["50 rows/s; imm needs 100 to 100000: add resample=100"]),
     ],
 )

@@ -136,7 +136,7 @@ def test_hall_lines_are_decoded(tmp_path):
         ({"lines": "ab"}, "lines='ab': give the names of 2 columns"),
         ({"hall": ("u", "v")}, "hall=('u', 'v'): give the names of 3 columns"),
         ({"lines": "ab", "hall": "abc"}, "lines and hall: pass one of them"),
-        ({"rate": 5}, "rate=5: must be from 10 to 100000 Hz"),
+        ({"rate": 4}, "rate=4: must be from 5 to 100000 Hz"),
         ({"counts_per_rev": 1}, "counts_per_rev"),
         ({"lines": ("u", "x")}, "hall.csv: line 1: no column 'x'"),
         ({}, "with lines=['A', 'B'], or three Hall lines with hall=['U', 'V', 'W']"),
@@ -327,8 +327,8 @@ def test_coarsening_is_refused_with_the_reason(data):
     fine = data / "real" / "epfl-paddle-hand.csv.gz"
     with pytest.raises(ValueError, match="ask for at most 15000 counts/rev"):
         limpid.coarsen(fine, 20_000)
-    with pytest.raises(ValueError, match="rate=5: must be from 10 to 100000 Hz"):
-        limpid.coarsen(fine, 1024, rate=5)
+    with pytest.raises(ValueError, match="rate=4: must be from 5 to 100000 Hz"):
+        limpid.coarsen(fine, 1024, rate=4)
     with pytest.raises(ValueError, match="give fine_counts_per_rev=, or list the file"):
         limpid.coarsen(data / "back-and-forth.csv", 16)
     for none in (0, -3, 15, 4_000_001):

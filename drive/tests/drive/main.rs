@@ -1,5 +1,6 @@
 //! The tool's binary against a board that a script plays over TCP, and against the emulated board.
 
+mod answers;
 mod bring_up;
 mod calibrate;
 mod commands;

@@ -234,15 +234,15 @@ fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
         ),
         (
             "[[preset]]\nrate_hz = 0\nplant = \"friction\"\nestimators = {}\n".into(),
-            &["line 2, rate_hz = 0: must be from 10 to 10000000 Hz"],
+            &["line 2, rate_hz = 0: must be from 5 to 10000000 Hz"],
         ),
         (
             "[[preset]]\nrate_hz = inf\nplant = \"friction\"\nestimators = {}\n".into(),
-            &["line 2, rate_hz = inf: must be from 10 to 10000000 Hz"],
+            &["line 2, rate_hz = inf: must be from 5 to 10000000 Hz"],
         ),
         (
             "[[preset]]\nrate_hz = 1e-300\nplant = \"friction\"\nestimators = {}\n".into(),
-            &["line 2, rate_hz = 1e-300: must be from 10"],
+            &["line 2, rate_hz = 1e-300: must be from 5 to"],
         ),
         (
             preset("counts_per_rev = 3\nestimators = {}"),

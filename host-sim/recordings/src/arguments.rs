@@ -45,7 +45,7 @@ pub struct ColumnOptions {
     /// counts_small=M for the other encoder; repeatable
     #[arg(long, value_name = "M")]
     pub modulus: Vec<String>,
-    /// Rate of the rows, for a recording without a column of time
+    /// Rate of the rows, for a recording without a column of time, or whose times jitter
     #[arg(long, value_name = "HZ")]
     pub row_rate: Option<f64>,
     /// Leave out stale readings.

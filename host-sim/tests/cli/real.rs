@@ -163,7 +163,7 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
         ),
         (
             "coarsen f.csv --counts-per-rev 64 --rate 0",
-            "--rate 0: must be from 10 to 100000 Hz",
+            "--rate 0: must be from 5 to 100000 Hz",
         ),
         (
             "coarsen f.csv --counts-per-rev 64 --phase NaN",

@@ -113,7 +113,7 @@ impl Encoder {
         let own = steps.round();
         if own == f64::from(counts_per_rev) && (steps - own).abs() > PART {
             return format!(
-                "they are multiples of 1/{} revolution, to which {own} counts/rev are next",
+                "they are multiples of 1/{} revolution, and {own} is the nearest whole number",
                 shown(to_digits(steps, 8))
             );
         }
@@ -224,7 +224,8 @@ mod tests {
         let nearest = said(drive, 16_471);
         let rounded = "they are multiples of 1/16470.7";
         assert!(
-            nearest.contains(rounded) && nearest.contains("to which 16471 counts/rev are next"),
+            nearest.contains(rounded)
+                && nearest.contains("revolution, and 16471 is the nearest whole number"),
             "{nearest}"
         );
         let fine = said(31_457_280.0, 4096);
