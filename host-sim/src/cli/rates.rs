@@ -55,6 +55,8 @@ mod tests {
             let said = format!("Control rate, 100 to 100000 Hz; repeatable [default: {end}]");
             assert_eq!(help, said);
         }
+        let help = recording_rate_help("Rate of the ticks", ", one");
+        assert_eq!(help, "Rate of the ticks, 5 to 100000 Hz, one");
     }
 
     #[test]

@@ -193,15 +193,14 @@ fn each_question_for_the_identity_has_its_answer() {
         .flatten();
     let mut rtt = question.into_iter();
     let mut unknown_at = Vec::new();
-    for _ in 0..5 {
-        commands.receive(Channel::Port, || port.next());
-        commands.receive(Channel::Rtt, || rtt.next());
-        if commands.asked().identity {
-            unknown_at.push(commands.rejected().unknown);
+    // Each look begins with the other channel.
+    for first in [Channel::Port, Channel::Rtt].repeat(5) {
+        for channel in [first, Channel::Port, Channel::Rtt] {
+            commands.receive(channel, || match channel {
+                Channel::Port => port.next(),
+                Channel::Rtt => rtt.next(),
+            });
         }
-        // The next look begins with the other channel.
-        commands.receive(Channel::Rtt, || rtt.next());
-        commands.receive(Channel::Port, || port.next());
         if commands.asked().identity {
             unknown_at.push(commands.rejected().unknown);
         }

@@ -21,8 +21,9 @@ impl Parameters {
     }
 
     /// One line for each preset whose values are scaled to a rate or an encoder that is far from the
-    /// tuned one: the estimators, by their names unless they are many and all that have tuned values; both rates and encoders, and the remedy: a recording is tuned on at any
-    /// rate, the simulated device only at those of [`RATES_HZ`].
+    /// tuned one: the estimators, by their names or as all that have tuned values; both rates and encoders;
+    /// and the remedy: a recording is tuned on at any rate, the simulated device only at those of
+    /// [`RATES_HZ`].
     #[must_use]
     pub fn used_far_away(&self, kinds: &[&Kind], setup: &Setup, plant: PlantKind) -> Vec<String> {
         let mut far: BTreeMap<String, Vec<&str>> = BTreeMap::new();

@@ -188,7 +188,12 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "milliseconds-at-700-hz.csv",
         "--column t=t_ms",
-        &["column t: ", "% of the steps", "add --resample"],
+        &[
+            "column t: ",
+            "% of the steps",
+            "came at an even rate, give it with --row-rate 700,",
+            "add --resample",
+        ],
     ),
     (
         "own.csv",

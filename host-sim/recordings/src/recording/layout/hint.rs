@@ -190,7 +190,9 @@ fn on_its_side(layout: &Layout) -> Option<String> {
     (!layout.has_header() && columns > WIDE).then(|| {
         format!(
             "there are no names but {columns} columns: if each line is a signal, exchange lines and columns, for example \
-             with numpy.savetxt('log.csv', numpy.loadtxt(FILE, delimiter=',').T, delimiter=',')"
+             with numpy.savetxt('log.csv', numpy.loadtxt(FILE, delimiter=',').T, delimiter=','); else give the numbers of \
+             the columns, for example --column {}",
+            numbered(layout)
         )
     })
 }

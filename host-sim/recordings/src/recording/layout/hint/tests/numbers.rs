@@ -85,3 +85,32 @@ fn units_of_rows_with_names_fit_the_numbers_too() {
         }
     }
 }
+
+/// SerialPlot calls its channels as a logic analyser does.
+#[test]
+fn channels_beyond_levels_are_no_lines_of_a_logic_analyser() {
+    let read_at = |scale: u32| {
+        let row = |k: u32| format!("{},{}", scale * (k % 2), scale * (k / 2 % 2));
+        read(&rows("Channel 1,Channel 2\n", row), "").unwrap_err()
+    };
+    assert!(read_at(1).contains("lines of a logic analyser"));
+    let said = read_at(45);
+    assert!(
+        !said.contains("logic analyser") && said.contains("name the columns"),
+        "{said}"
+    );
+}
+
+#[test]
+fn table_whose_lines_are_signals_is_to_be_turned() {
+    let line = |columns: u32, scale: u32| {
+        let fields: Vec<_> = (0..columns).map(|k| (scale * k).to_string()).collect();
+        fields.join(",") + "\n"
+    };
+    let said = |columns| read(&(line(columns, 1) + &line(columns, 3)), "").unwrap_err();
+    let turned = "columns: if each line is a signal, exchange lines and columns, ";
+    assert!(said(101).contains(turned), "{}", said(101));
+    // It may be one all the same.
+    assert!(said(101).contains("else give the numbers of the columns, for example --column t="));
+    assert!(!said(100).contains(turned), "{}", said(100));
+}
