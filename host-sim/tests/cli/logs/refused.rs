@@ -191,7 +191,8 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         &[
             "column t: ",
             "% of the steps",
-            "came at an even rate, give it with --row-rate 700,",
+            // 700 Hz, in a log of 0.24 s with whole milliseconds.
+            "came at an even rate, give it with --row-rate 70",
             "add --resample",
         ],
     ),
