@@ -30,7 +30,7 @@ pub(super) use search::{UNKNOWN, is_number, number, numbers, unit_since_1970};
 use search::{is_content, moments, named, probable, since_1970, two_levels, without_value};
 pub(super) use seen::Seen;
 use unit_row::UnitRow;
-pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect};
+pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect, is_joint};
 
 /// Number of the first lines among which the header is searched.
 pub(super) const SEARCHED: usize = 500;
@@ -96,16 +96,8 @@ pub(super) struct Keyed {
 }
 
 impl Layout {
-    /// The layout of the log called `name` that begins with `head`. `is_cut` is true if it goes on.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] if rows have another separator than the header.
-    pub(super) fn of(
-        head: &str,
-        is_cut: bool,
-        options: &ReadOptions,
-        name: &str,
-    ) -> Result<Self, Failure> {
+    /// The layout of the log that begins with `head`. `is_cut` is true if it goes on.
+    pub(super) fn of(head: &str, is_cut: bool, options: &ReadOptions) -> Self {
         let bare = head.lines().map(|line| &line[stamp(line.as_bytes())..]);
         let mut lines: Vec<_> = bare.take(SEARCHED + 1).collect();
         let has_row_ends = row_ends::end(&lines);
@@ -130,10 +122,10 @@ impl Layout {
             )
         };
         if let Some(layout) = Self::labview(&lines).or_else(|| Self::twincat(&lines)) {
-            return Ok(Self {
+            return Self {
                 seen: Seen::of(&layout, &lines),
                 ..layout
-            });
+            };
         }
         let (mut layout, is_named) = match UnitRow::find(&lines) {
             None => search(&lines),
@@ -148,10 +140,10 @@ impl Layout {
             }
         };
         if is_named {
-            layout.check_separator(&lines, name)?;
+            layout.separate_as_rows(&lines);
         }
         layout.leave_out_cut_row(&lines);
-        Ok(Self {
+        Self {
             has_row_ends,
             has_rate: options.row_rate_hz.is_some(),
             is_stamped: is_stamped(head),
@@ -161,7 +153,7 @@ impl Layout {
             since_1970: since_1970(&layout, &lines),
             moments: moments(&layout, &lines),
             ..layout
-        })
+        }
     }
 
     pub(super) fn header(separator: Separator, mut names: Vec<String>, index: usize) -> Self {
@@ -205,30 +197,18 @@ impl Layout {
         }
     }
 
-    /// Checks that the first row has the separator of the header.
-    fn check_separator(&self, lines: &[&str], name: &str) -> Result<(), Failure> {
-        let below = (0..).zip(lines).skip(self.skip as usize);
-        let mut rows = below.filter(|(_, line)| is_content(line) && comment(line).is_none());
-        let Some((index, row)) = rows.next() else {
-            return Ok(());
-        };
+    /// Takes the separator of the first row where it is another one than that of the header.
+    fn separate_as_rows(&mut self, lines: &[&str]) {
+        let mut below = lines.iter().skip(self.skip as usize);
+        let row = below.find(|line| is_content(line) && comment(line).is_none());
+        let Some(row) = row else { return };
         let own = self.separator.split(row);
         let is_row = own.len() == self.names.len()
             && own.iter().all(|field| is_number(field, self.separator));
-        match numbers(row) {
-            Some((other, fields))
-                if !is_row && other != self.separator && fields == self.names.len() =>
-            {
-                Err(Failure::Input(format!(
-                    "{name}: line {}: fields separated by {}, where the header in line {} has {}; write one \
-                     separator in all lines",
-                    index + 1,
-                    other.name(),
-                    self.line,
-                    self.separator.name()
-                )))
-            }
-            _ => Ok(()),
+        if let Some((separator, fields)) = numbers(row).filter(|_| !is_row)
+            && fields == self.names.len()
+        {
+            self.separator = separator;
         }
     }
 

@@ -119,7 +119,7 @@ impl<'a> Records<'a> {
                 HEAD >> 10
             )));
         } else {
-            let layout = Layout::of(&text, is_cut, options, name)?;
+            let layout = Layout::of(&text, is_cut, options);
             let rows = Text::new(input, end, &layout, layout.names.len());
             (layout, Source::Text(rows))
         };

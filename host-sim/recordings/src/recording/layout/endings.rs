@@ -102,11 +102,20 @@ fn plain(quantity: Quantity, column: &str) -> Ending<'_> {
     }
 }
 
+/// Units of one letter or sign, which end no name.
+const SINGLE: [&str; 10] = ["v", "w", "n", "k", "c", "m", "g", "%", "-", "h"];
+
+/// Whether a whole field is a unit of any quantity.
+pub(super) fn is_any_unit(field: &str) -> bool {
+    let lower = field.to_lowercase();
+    Quantity::of_unit(field).is_some() || is_other_unit(field) || SINGLE.contains(&lower.as_str())
+}
+
 /// Whether `end` is a unit of some quantity. A single letter is also a name: motor A, axis s.
 fn is_other_unit(end: &str) -> bool {
-    let is_known = |end: &str| Quantity::ALL.iter().any(|known| known.unit(end).is_some());
     let is_unit = |end: &str| {
-        end.chars().count() > 1 && (is_known(end) || FOREIGN.contains(&end) || is_prefixed(end))
+        end.chars().count() > 1
+            && (Quantity::of_unit(end).is_some() || FOREIGN.contains(&end) || is_prefixed(end))
     };
     let end = end.to_lowercase();
     // A quotient: of a unit and a time.

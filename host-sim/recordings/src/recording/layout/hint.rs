@@ -9,7 +9,7 @@ use super::endings::Ending;
 use super::formats::Ambiguous;
 use super::header::short;
 use super::search::{is_number, number};
-use super::{Keyed, Layout, Places, has, is_duration, seen};
+use super::{Keyed, Layout, Places, has, is_duration, is_joint, seen};
 use crate::recording::options::Column;
 use crate::recording::options::units::Quantity;
 use crate::recording::records::labelled::is_labelled;
@@ -117,7 +117,8 @@ fn only_indirect(layout: &Layout) -> Option<String> {
     let first = like
         .clone()
         .find(|name| is_unfit(Column::CountsLarge, name))?;
-    (like.all(|name| is_unfit(Column::CountsLarge, name))).then(|| {
+    let is_only = like.all(|name| is_unfit(Column::CountsLarge, name));
+    (is_only && !layout.names.iter().any(|name| is_joint(name))).then(|| {
         format!(
             ": by its name '{}' is a rate, a target, an error, a difference or an electrical angle",
             short(first)

@@ -60,7 +60,17 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
     let header = |(at, line): (usize, &&str)| {
         let text = comment(line).unwrap_or(line);
         let has_names = text.chars().any(char::is_alphabetic) && numbers(text).is_none();
-        has_names.then(|| Layout::header(separator, names(separator, text, named), at))
+        let names = || {
+            let own = names(separator, text, named);
+            // A comment may have blanks between its names, and the rows commas.
+            let other = Separator::ALL.into_iter().map(|other| other.split(text));
+            let mut other = other.filter(|names| names.len() == named && name_columns(names));
+            match own.len() == named {
+                true => own,
+                false => other.next().unwrap_or(own),
+            }
+        };
+        has_names.then(|| Layout::header(separator, names(), at))
     };
     let above = || (lines[..index].iter().enumerate().rev()).filter(|(_, line)| is_content(line));
     // The latest line, and the latest one that is no comment.
@@ -171,7 +181,7 @@ fn has_values(header: &Layout) -> bool {
 }
 
 /// Whether one of these names is that of a time, and another one that of a position.
-fn name_columns(names: &[String]) -> bool {
+pub(super) fn name_columns(names: &[String]) -> bool {
     let [mut timed, mut placed] = [false; 2];
     for name in names {
         match has(name, TIMES) || has(name, &["t"]) {

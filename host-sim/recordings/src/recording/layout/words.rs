@@ -10,7 +10,8 @@ const DERIVED: &[&str] = &["vel", "speed", "omega", "acc", "dot"];
 /// Parts of the names of positions that are no measured position of the shaft, or of another angle.
 const INDIRECT: &[&str] = &[
     "err", "target", "cmd", "command", "demand", "request", "ref", "set", "sp", "des", "goal",
-    "elec", "delta", "diff", "rate", "tcp", // Electrical and desired: theta_e, theta_d.
+    "elec", "delta", "diff", "rate", "tcp", // Targets in other languages.
+    "soll", "consign", // Electrical and desired: theta_e, theta_d.
     "e", "d",
 ];
 
@@ -80,6 +81,19 @@ pub(crate) fn is_indirect(name: &str) -> bool {
     is_axis || has(name, INDIRECT) || parts.into_iter().any(desired)
 }
 
+/// Whether `name` is that of a joint and of nothing that is measured at it: `joint_1`, `elbow_joint`, `J3`.
+pub(crate) fn is_joint(name: &str) -> bool {
+    let parts = parts(name);
+    let mut parts = parts.iter().filter(|part| !part.is_empty()).rev();
+    let is_number = |part: &&String| part.parse::<u8>().is_ok();
+    match parts.next() {
+        Some(number) if is_number(&number) => parts
+            .next()
+            .is_some_and(|name| ["joint", "j"].contains(&name.as_str())),
+        last => last.is_some_and(|name| name == "joint"),
+    }
+}
+
 /// Whether `name` is that of a duration.
 pub(crate) fn is_duration(name: &str) -> bool {
     has(name, DURATIONS)
@@ -117,6 +131,30 @@ mod tests {
         }
         assert!(has("time_ms", &["ms"]) && has("T(ms)", &["ms"]) && has("iqRef", &["iq"]));
         assert!(has("motor_i_q", &["i_q"]) && !has("rms_A", &["ms"]));
+    }
+
+    #[test]
+    fn joint_is_a_whole_name() {
+        for name in [
+            "joint1",
+            "joint_1",
+            "J3",
+            "/arm/elbow_joint",
+            "shoulder_pan_joint",
+        ] {
+            assert!(is_joint(name), "{name}");
+        }
+        for name in [
+            "/joint_states/header/seq",
+            "joint1_velocity",
+            "j",
+            "adj_3_gain",
+            "obj",
+            "3",
+            "",
+        ] {
+            assert!(!is_joint(name), "{name}");
+        }
     }
 
     #[test]

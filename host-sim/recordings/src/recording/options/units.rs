@@ -218,6 +218,12 @@ impl Quantity {
         self.units().iter().chain(self.rare()).find(called)
     }
 
+    /// The quantity that `name` is a unit of: the first one of several.
+    pub(crate) fn of_unit(name: &str) -> Option<Self> {
+        let known = |quantity: &Self| quantity.unit(name).is_some();
+        Self::ALL.into_iter().find(known)
+    }
+
     /// Names of the units, for messages.
     pub(crate) fn list(self) -> String {
         let names: Vec<_> = self.units().iter().map(Unit::name).collect();

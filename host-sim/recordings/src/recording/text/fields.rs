@@ -207,8 +207,8 @@ mod tests {
                 "'0.5 rad' is not a number; write it without its unit",
             ),
             (
-                "t,counts_large\ns,counts\n0,0\n",
-                "line 2: column t: 's' is not a number; remove the line if it has the units, and state \
+                "t,counts_large\nZeit,Inkremente\n0,0\n",
+                "line 2: column t: 'Zeit' is not a number; remove the line if it has the units, and state \
                  them with --column",
             ),
             (

@@ -3,7 +3,9 @@
 use super::super::endings::Ending;
 use super::super::formats::Format;
 use super::super::header::short;
-use super::super::{Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect};
+use super::super::{
+    Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect, is_joint,
+};
 use super::{LISTED, languages};
 use crate::recording::options::Column;
 use crate::recording::options::units::{Quantity, Unit};
@@ -76,7 +78,7 @@ pub(super) fn choice(layout: &Layout, places: &Places) -> Option<String> {
     let words = positions();
     let is_like = |place: &usize| {
         let name = &layout.names[*place];
-        has(name, &words)
+        (has(name, &words) || is_joint(name))
             && !is_unfit(Column::CountsLarge, name)
             && !is_foreign(layout, Quantity::Position, *place)
     };
@@ -147,6 +149,8 @@ fn probable(layout: &Layout, column: Column, words: &[&str]) -> Option<usize> {
     let names = &layout.names;
     let fits = |place: &usize| !is_unfit(column, &names[*place]);
     let is_like = |place: &usize| has(&names[*place], words) && fits(place);
+    let is_joint =
+        |place: &usize| column == Column::CountsLarge && fits(place) && is_joint(&names[*place]);
     let has_unit =
         |place: &usize| fits(place) && matches!(layout.ending(quantity, *place), Ending::Unit(_));
     let more = match column {
@@ -170,6 +174,7 @@ fn probable(layout: &Layout, column: Column, words: &[&str]) -> Option<usize> {
         .or_else(|| moments().next())
         .or_else(|| all().find(|place| is_like(place) && !is_foreign(layout, quantity, *place)))
         .or_else(|| all().find(is_like))
+        .or_else(|| all().find(is_joint))
         .or_else(|| all().find(has_unit))
         .or_else(|| all().find(is_translated))
         .or_else(|| beside_time(layout, column).filter(fits))

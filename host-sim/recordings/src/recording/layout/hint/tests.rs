@@ -257,6 +257,25 @@ fn units_that_nothing_states_are_called_guesses() {
 }
 
 #[test]
+fn joint_is_proposed_where_no_position_is_named() {
+    for (header, said) in [
+        (
+            "stamp,joint1,joint2",
+            "2 positions fit: joint1; joint2; name one",
+        ),
+        (
+            "stamp,target_pos,elbow_joint",
+            "counts_large=elbow_joint:rad', where",
+        ),
+        ("stamp,J1,angle", "counts_large=angle:rad', where"),
+    ] {
+        let error = read(&format!("{header}\n0,0.5,0.1\n1,0.7,0.2\n"), "").unwrap_err();
+        assert!(error.contains(said), "{error}");
+        assert!(!error.contains("by its name"), "{error}");
+    }
+}
+
+#[test]
 fn column_of_dates_is_the_time_of_the_example() {
     for (name, field, option) in [
         ("when", "2026-03-01T23:59:57.00K+05:30", "t=when"),

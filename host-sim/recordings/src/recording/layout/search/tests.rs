@@ -183,6 +183,21 @@ fn quotes_around_nothing_are_a_blank_line() {
 }
 
 #[test]
+fn names_with_blanks_between_them_are_above_rows_with_commas() {
+    for names in ["# time_ms counts", "time_ms\tcounts", "% time_ms; counts"] {
+        let recording = read(&format!("{names}\n{ROWS}"), "").unwrap();
+        assert_eq!(counts(&recording), [0, 3, 6, 9], "{names}");
+        let recording = read(&format!("{names}\n{ROWS}"), "t=1:ms,counts_large=counts").unwrap();
+        assert_eq!(counts(&recording), [0, 3, 6, 9], "{names}");
+    }
+    // Words that are no names of a time and a position, or of more columns.
+    for words in ["# motor two", "# time_ms of counts"] {
+        let error = read(&format!("{words}\n{ROWS}"), "").unwrap_err();
+        assert!(error.contains("there are no names"), "{error}");
+    }
+}
+
+#[test]
 fn words_of_a_comment_with_a_number_or_a_value_are_no_names() {
     for comment in ["% 7 9 gain", "% gain =0.5 rad/s,", "# motor 2 begins"] {
         let text = format!("{comment}\n0 0 1\n1 3 1\n2 6 1\n3 9 1\n");
