@@ -30,7 +30,9 @@ pub(super) use search::{UNKNOWN, is_number, number, numbers, unit_since_1970};
 use search::{is_content, moments, named, probable, since_1970, two_levels, without_value};
 pub(super) use seen::Seen;
 use unit_row::UnitRow;
-pub(super) use words::{POSITIONS, TIMES, has, is_derived, is_duration, is_indirect, is_joint};
+pub(super) use words::{
+    POSITIONS, TIMES, has, is_coordinate, is_derived, is_duration, is_indirect, is_joint,
+};
 
 /// Number of the first lines among which the header is searched.
 pub(super) const SEARCHED: usize = 500;
@@ -215,6 +217,12 @@ impl Layout {
     /// Whether the column at `place` has a number with a fraction in the first rows.
     fn is_fractional(&self, place: usize) -> bool {
         self.seen.get(place).is_some_and(|seen| seen.is_fractional)
+    }
+
+    /// Whether the column at `place` has one number in the first rows.
+    fn is_at_rest(&self, place: usize) -> bool {
+        let seen = self.seen.get(place);
+        seen.is_some_and(|seen| seen.rows > 1 && seen.is_constant)
     }
 
     /// Whether the text has a line with the names of its columns.

@@ -14,7 +14,7 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 
 use terminal::failure::Failure;
 
-use super::layout::Layout;
+use super::layout::{Layout, is_number};
 use separator::{Lines, Separator};
 
 /// Bytes and lines of a row from which a quote is taken as one that has no end.
@@ -94,7 +94,7 @@ impl<R: BufRead> Text<R> {
         let is_begin = fields < columns && (self.ends_early || self.is_cut(line));
         match fields == columns || may_end || is_begin {
             true => Ok(Some(line)),
-            false => Err(Failure::Input(self.ragged(line, fields, name))),
+            false => Err(Failure::Input(self.ragged(line, record, name))),
         }
     }
 
@@ -109,8 +109,12 @@ impl<R: BufRead> Text<R> {
         below >= FEWEST && 10 * alike >= 9 * below
     }
 
-    fn ragged(&mut self, line: u64, fields: usize, name: &str) -> String {
-        let columns = self.columns;
+    fn ragged(&mut self, line: u64, record: &ByteRecord, name: &str) -> String {
+        let (fields, columns) = (record.len(), self.columns);
+        let has_number = record.iter().any(|field| {
+            let field = String::from_utf8_lossy(field);
+            is_number(field.trim(), self.separator)
+        });
         let model = match self.header {
             0 => format!("the first row, in line {},", self.first_row),
             1 => "the first line".to_owned(),
@@ -127,6 +131,9 @@ impl<R: BufRead> Text<R> {
             );
         }
         let remedy = match (self.header, fields > columns) {
+            _ if !has_number => {
+                "it has no number: if another table begins there, cut the log there, else remove the line"
+            }
             (0, _) => "one of these lines is cut, or is two rows run together: remove it",
             (_, false) => "remove the line if the log was cut there",
             (_, true) => "remove the line if two rows run together there",

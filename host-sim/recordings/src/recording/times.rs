@@ -56,7 +56,8 @@ pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2], taken: usize) -> 
         "if the clock was set back, cut the log there, because sorted rows would mix two motions; else sort the rows by \
          time, or remove the row"
     } else {
-        "sort the rows by time, or remove the row"
+        "sort the rows by time, or remove the row; where the column is no time, --row-rate HZ is the rate of the rows in \
+         its place"
     };
     let [t, last] = [t, last].map(shown);
     row.failure(

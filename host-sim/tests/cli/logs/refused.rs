@@ -19,7 +19,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         "",
         &[
             "no names but 2 columns",
-            "--column t=1:ms,counts_large=2:rad, where the units ms and rad are guesses; read",
+            "--column t=1:ms,counts_large=2:rad, where the columns and the units ms and rad are guesses; read",
         ],
     ),
     (
@@ -118,7 +118,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         "",
         &[
             "no names but 7 columns",
-            "--column t=1:s+2:ns,counts_large=5:rad, where the units ns and rad are guesses",
+            "--column t=1:s+2:ns,counts_large=5:rad, where the columns and the units ns and rad are guesses",
         ],
     ),
     (

@@ -276,8 +276,8 @@ mod tests {
             (
                 "time_min,pos_urad\n0,1\n",
                 "--column 't=time_min:UNIT,counts_large=pos_urad:UNIT', where 'min' is no unit of t (s, ms, us, ns), \
-                 and 'urad' is no unit of counts_large (counts, deg, rad, rev, mdeg, mrad, arcmin, arcsec): convert the numbers, and \
-                 write their unit in the place of UNIT; read",
+                 and 'urad' is no unit of counts_large (counts, deg, rad, rev, mdeg, mrad, arcmin, arcsec): write \
+                 the unit of the numbers in the place of UNIT, or convert them to one; read",
             ),
             (
                 "stamp,the user's count\n0,1\n",

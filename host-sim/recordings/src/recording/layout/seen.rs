@@ -16,6 +16,8 @@ const EXACT: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Seen {
     pub(crate) first: Option<f64>,
+    /// How many rows have a number.
+    pub(crate) rows: usize,
     /// The largest number without its sign.
     pub(crate) largest: f64,
     /// Whether a number has a fraction.
@@ -43,6 +45,7 @@ impl Seen {
     pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
         let seen = Self {
             first: numbers.first().copied(),
+            rows: numbers.len(),
             largest: numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs())),
             is_fractional: numbers.iter().any(|x| x.fract() != 0.0),
             is_constant: numbers.windows(2).all(|pair| pair[0] == pair[1]),
@@ -65,9 +68,14 @@ impl Seen {
         }
     }
 
+    /// Whether the numbers are those of the rows, from any number on.
+    pub(crate) fn is_counting(&self) -> bool {
+        self.step == Some(1.0) && self.unevenness == 0.0
+    }
+
     /// Whether the numbers are those of the rows, from 0 on.
     fn is_index(&self) -> bool {
-        self.first == Some(0.0) && self.step == Some(1.0) && self.unevenness == 0.0
+        self.first == Some(0.0) && self.is_counting()
     }
 
     /// Whether the numbers rise in even steps that are no whole numbers.
@@ -86,6 +94,11 @@ pub(super) fn time(seen: &[Seen]) -> Option<usize> {
         true => others.next().or(Some(time)),
         false => Some(time),
     }
+}
+
+/// Whether there are rows enough to tell that no column is a time.
+pub(super) fn has_no_time(seen: &[Seen]) -> bool {
+    seen.iter().any(|seen| seen.rows >= FEWEST) && seen.iter().all(|seen| seen.step.is_none())
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Words in the names of columns.
 
 /// Parts of the names of positions, and of times.
-pub(crate) const POSITIONS: &[&str] = &["counts", "encoder", "enc", "pos", "angle", "theta", "q"];
+pub(crate) const POSITIONS: &[&str] = &[
+    "counts", "encoder", "enc", "pos", "angle", "theta", "rotation", "q",
+];
 pub(crate) const TIMES: &[&str] = &["time", "stamp", "ts"];
 
 /// Parts of the names of what is derived from a position.
@@ -16,9 +18,10 @@ const INDIRECT: &[&str] = &[
 ];
 
 /// Parts of a name beside which `q` is no joint: quantities of the q axis, and parts of a quaternion.
-const NO_JOINT: &[&str] = &[
-    "i", "u", "v", "w", "x", "y", "z", "current", "curr", "voltage", "volt",
-];
+const NO_JOINT: &[&str] = &["i", "u", "v", "current", "curr", "voltage", "volt"];
+
+/// Parts of the names of coordinates.
+const COORDINATES: &[&str] = &["w", "x", "y", "z"];
 
 /// Parts of the names of durations, which are no time of a row.
 const DURATIONS: &[&str] = &[
@@ -77,8 +80,16 @@ pub(crate) fn is_indirect(name: &str) -> bool {
     };
     let parts = parts(name);
     let has_part = |words: &[&str]| parts.iter().any(|part| words.contains(&part.as_str()));
-    let is_axis = has_part(&["q"]) && has_part(NO_JOINT);
+    let is_axis = has_part(&["q"]) && (has_part(NO_JOINT) || has_part(COORDINATES));
     is_axis || has(name, INDIRECT) || parts.into_iter().any(desired)
+}
+
+/// Whether `name` is that of a coordinate of a point or of a part of a quaternion, as a camera or a tool has them.
+pub(crate) fn is_coordinate(name: &str) -> bool {
+    let parts = parts(name);
+    parts
+        .iter()
+        .any(|part| COORDINATES.contains(&part.as_str()))
 }
 
 /// Whether `name` is that of a joint and of nothing that is measured at it: `joint_1`, `elbow_joint`, `J3`.

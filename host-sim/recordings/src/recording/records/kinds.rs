@@ -86,6 +86,9 @@ pub(crate) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
     if let Some((_, what, remedy)) = kind {
         return refused(&format!("this is {what}; {remedy}, or give the text as -"));
     }
+    // A logger that began anew may write any number of NUL bytes before its first line.
+    let begin = head.iter().position(|byte| *byte != 0).unwrap_or(0);
+    let head = &head[begin..];
     let head = &head[..head.len().min(SEARCHED)];
     let is_control = |byte: &&u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
     let nuls = head.iter().filter(|byte| **byte == 0).count();

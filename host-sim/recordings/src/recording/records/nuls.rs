@@ -60,10 +60,15 @@ mod tests {
             "{:?}",
             recording.notes
         );
-        let error = read(&format!("a log\n{}", zeros(80)), "").unwrap_err();
-        assert_eq!(
-            error,
-            "r.csv: line 1: the file is not text; write it as CSV"
-        );
+        // However many stand before the text.
+        let recording = read(&format!("{}time_ms,counts\n{}", zeros(5000), rows(0)), "").unwrap();
+        assert_eq!(recording.trace.counts_large[8999], 8 * 8999);
+        for text in [format!("a log\n{}", zeros(80)), zeros(80)] {
+            let error = read(&text, "").unwrap_err();
+            assert_eq!(
+                error,
+                "r.csv: line 1: the file is not text; write it as CSV"
+            );
+        }
     }
 }

@@ -4,9 +4,10 @@ use super::super::endings::Ending;
 use super::super::formats::Format;
 use super::super::header::short;
 use super::super::{
-    Layout, POSITIONS, Places, TIMES, has, is_derived, is_duration, is_indirect, is_joint,
+    Layout, POSITIONS, Places, TIMES, has, is_coordinate, is_derived, is_duration, is_indirect,
+    is_joint,
 };
-use super::{LISTED, languages};
+use super::languages;
 use crate::recording::options::Column;
 use crate::recording::options::units::{Quantity, Unit};
 use crate::recording::times::clock::FASTEST_HZ;
@@ -56,7 +57,7 @@ pub(super) fn parts(layout: &Layout) -> String {
     let foreign = match foreign[..] {
         [] => String::new(),
         _ => format!(
-            ", where {}: convert the numbers, and write their unit in the place of UNIT",
+            ", where {}: write the unit of the numbers in the place of UNIT, or convert them to one",
             foreign.join(", and ")
         ),
     };
@@ -65,7 +66,7 @@ pub(super) fn parts(layout: &Layout) -> String {
 }
 
 /// What to say of units that are guesses.
-pub(super) fn guesses(units: &[&str]) -> String {
+fn guesses(units: &[&str]) -> String {
     match units {
         [] => String::new(),
         [one] => format!(", where the unit {one} is a guess"),
@@ -73,35 +74,14 @@ pub(super) fn guesses(units: &[&str]) -> String {
     }
 }
 
-/// The positions of which one is meant, by their names: how many, and the first of them; `None` for less than two.
-pub(super) fn choice(layout: &Layout, places: &Places) -> Option<String> {
-    let words = positions();
-    let is_like = |place: &usize| {
-        let name = &layout.names[*place];
-        (has(name, &words) || is_joint(name))
-            && !is_unfit(Column::CountsLarge, name)
-            && !is_foreign(layout, Quantity::Position, *place)
+/// What to say of columns without names, which are guesses as their units are.
+pub(super) fn guessed_columns(units: &[&str]) -> String {
+    let units = match units {
+        [] => String::new(),
+        [one] => format!(" and the unit {one}"),
+        all => format!(" and the units {}", all.join(" and ")),
     };
-    let all: Vec<_> = (0..layout.names.len()).filter(is_like).collect();
-    if all.len() < 2 || places.get(Column::CountsLarge).is_some() {
-        return None;
-    }
-    let called = |place: &usize| {
-        let name = &layout.names[*place];
-        match is_repeated(layout, name) {
-            true => format!("{} in column {}", short(name), place + 1),
-            false => short(name),
-        }
-    };
-    let mut listed: Vec<_> = all.iter().take(LISTED).map(called).collect();
-    if all.len() > LISTED {
-        listed.push("...".to_owned());
-    }
-    Some(format!(
-        "{} positions fit: {}",
-        all.len(),
-        listed.join("; ")
-    ))
+    format!("the columns{units} are guesses")
 }
 
 /// Whether by its `name` a quantity is another one than `column`, whose words it has.
@@ -114,7 +94,7 @@ pub(super) fn is_unfit(column: Column, name: &str) -> bool {
 }
 
 /// Whether the name at `place` ends with a unit that is none of `quantity` in any language.
-fn is_foreign(layout: &Layout, quantity: Quantity, place: usize) -> bool {
+pub(super) fn is_foreign(layout: &Layout, quantity: Quantity, place: usize) -> bool {
     matches!(layout.ending(quantity, place), Ending::Unknown(_))
         && in_language(layout, quantity, place).is_none()
 }
@@ -127,7 +107,7 @@ fn in_language(layout: &Layout, quantity: Quantity, place: usize) -> Option<&'st
 }
 
 /// Whether several columns are called `name`.
-fn is_repeated(layout: &Layout, name: &str) -> bool {
+pub(super) fn is_repeated(layout: &Layout, name: &str) -> bool {
     layout.names.iter().filter(|known| *known == name).count() > 1
 }
 
@@ -162,6 +142,11 @@ fn probable(layout: &Layout, column: Column, words: &[&str]) -> Option<usize> {
         let name = languages::plain(&names[*place]);
         fits(place) && more.iter().any(|word| name.contains(word))
     };
+    // A coordinate of a point, or what rests, is a position if there is no other one.
+    let is_doubtful = |place: &usize| {
+        column == Column::CountsLarge
+            && (is_coordinate(&names[*place]) || layout.is_at_rest(*place))
+    };
     let all = || 0..names.len();
     let moments = || {
         let moments = layout.moments.iter().copied();
@@ -172,7 +157,12 @@ fn probable(layout: &Layout, column: Column, words: &[&str]) -> Option<usize> {
         .or_else(|| all().find(|place| names[*place].to_lowercase() == ours))
         .or_else(|| moments().find(is_like))
         .or_else(|| moments().next())
-        .or_else(|| all().find(|place| is_like(place) && !is_foreign(layout, quantity, *place)))
+        .or_else(|| {
+            let mut own =
+                all().filter(|place| is_like(place) && !is_foreign(layout, quantity, *place));
+            let first = own.clone().find(|place| !is_doubtful(place));
+            first.or_else(|| own.next())
+        })
         .or_else(|| all().find(is_like))
         .or_else(|| all().find(is_joint))
         .or_else(|| all().find(has_unit))

@@ -1,5 +1,6 @@
 //! Tests of the options that errors name.
 
+mod choice;
 mod numbers;
 
 use crate::recording::{read_log as read, read_log_at as read_at};
@@ -63,32 +64,32 @@ fn columns_without_names_are_proposed_by_their_first_numbers() {
     for (rows, said) in [
         (
             "0,1\n1,2\n",
-            "t=1:s,counts_large=2:counts, where the units s and counts are guesses; read",
+            "t=1:s,counts_large=2:counts, where the columns and the units s and counts are guesses; read",
         ),
         (
             "0.5,1.25\n0.75,2\n",
-            "t=1:s,counts_large=2:rad, where the units s and rad are guesses; read",
+            "t=1:s,counts_large=2:rad, where the columns and the units s and rad are guesses; read",
         ),
         (
             // The number of the device stays.
             "0.5,3,1.25\n0.75,3,2\n",
-            "t=1:s,counts_large=3:rad, where the units s and rad are guesses; read",
+            "t=1:s,counts_large=3:rad, where the columns and the units s and rad are guesses; read",
         ),
         (
             "1700000000123,a,7\n1700000000124,a,8\n",
-            "t=1:ms,counts_large=3:counts, where the unit counts is a guess; read",
+            "t=1:ms,counts_large=3:counts, where the columns and the unit counts are guesses; read",
         ),
         (
             "x,1700000000,999000000,7.5\nx,1700000001,0,8\n",
-            "t=2:s+3:ns,counts_large=4:rad, where the units ns and rad are guesses; read",
+            "t=2:s+3:ns,counts_large=4:rad, where the columns and the units ns and rad are guesses; read",
         ),
         (
             "1700000000.5,7\n1700000000.6,8\n",
-            "t=1:s,counts_large=2:counts, where the unit counts is a guess; read",
+            "t=1:s,counts_large=2:counts, where the columns and the unit counts are guesses; read",
         ),
         (
             "12:00:00.1,7,3\n12:00:00.2,8,4\n",
-            "t=1,counts_large=2:counts, where the unit counts is a guess; read",
+            "t=1,counts_large=2:counts, where the columns and the unit counts are guesses; read",
         ),
     ] {
         let error = read(rows, "").unwrap_err();
@@ -174,11 +175,11 @@ fn example_has_no_time_where_the_rate_is_stated() {
         ),
         (
             "0,1\n1,2\n",
-            "give the number of the column, for example --column counts_large=2:counts; read",
+            "give the number of the column, for example --column counts_large=2:counts, where the columns and",
         ),
         (
             "1\n2\n",
-            "give the number of the column, for example --column counts_large=1:counts; read",
+            "give the number of the column, for example --column counts_large=1:counts, where the columns and",
         ),
     ] {
         let error = read_at(Some(1000.0), text, "").unwrap_err();

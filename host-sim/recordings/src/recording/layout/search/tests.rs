@@ -103,6 +103,12 @@ fn row_of_another_length_is_named() {
         let error = read(text, options).unwrap_err();
         assert!(error.contains(said), "{error}");
     }
+    for end in ["velocity,1/s\n", "[next]\n"] {
+        let error = read(&format!("t,counts_large,x\n{}{end}", "0,1,2\n1,2,3\n"), "").unwrap_err();
+        let said = "where the first line has 3; it has no number: if another table begins there, cut the log there, else \
+                    remove the line";
+        assert!(error.contains(said), "{error}");
+    }
     let error = read(&format!("t,counts_large\n{ROWS}4,12,5,15\n"), "").unwrap_err();
     let said = "line 6: 4 fields where the first line has 2; remove the line if two rows run together there; numbers \
                 with a decimal comma";

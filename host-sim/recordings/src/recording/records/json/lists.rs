@@ -196,7 +196,7 @@ fn split<'a>(name: &str, rows: &[&'a str], names: &[&str]) -> Result<Vec<List<'a
 }
 
 /// Adds the lists of the value `text` called `name`, and those of the objects in it, whose names it precedes. An object
-/// whose keys are numbers is a list, if it has none.
+/// whose keys are numbers is a list, if it has none. A list of a single object, as of one run, is this object.
 fn collect<'a>(
     name: String,
     text: &'a str,
@@ -205,7 +205,16 @@ fn collect<'a>(
     match text.as_bytes().first() {
         Some(b'[') => {
             let values: Vec<&RawValue> = serde_json::from_str(text)?;
-            to.push((name, values.into_iter().map(RawValue::get).collect()));
+            let values: Vec<_> = values.into_iter().map(RawValue::get).collect();
+            let before = to.len();
+            if let [only] = values[..]
+                && only.starts_with('{')
+            {
+                collect(name.clone(), only, to)?;
+            }
+            if to.len() == before {
+                to.push((name, values));
+            }
         }
         Some(b'{') => {
             let members = serde_json::Deserializer::from_str(text).deserialize_map(Members)?;

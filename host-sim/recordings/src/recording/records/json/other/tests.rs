@@ -81,6 +81,15 @@ fn lists_in_a_list_are_columns() {
             r#"{"t": [0, 0.001, 0.002], "motors": {"1": {"at": [5, 6, 8]}, "2": {"at": [1, 1, 1]}}}"#,
             "counts_large=motors.1.at",
         ),
+        // A list of one run.
+        (
+            r#"{"limits": [1], "data": [{"name": "a", "t": [0, 0.001, 0.002], "at": [5, 6, 8]}]}"#,
+            "counts_large=at",
+        ),
+        (
+            r#"{"runs": [{"t": [0, 0.001, 0.002], "at": [5, 6, 8]}]}"#,
+            "t=runs.t,counts_large=runs.at",
+        ),
         // As Python prints tuples.
         (
             "(0.0, 5)\n(0.001, 6)\n(0.002, 8)\n",
