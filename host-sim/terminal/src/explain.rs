@@ -131,6 +131,13 @@ mod tests {
                 "must be a whole number from 0 on",
             ),
             ("-", arg().value_parser(value_parser!(u64)), digits),
+            ("-x", arg().value_parser(value_parser!(u64)), digits),
+            (
+                "",
+                arg().value_parser(value_parser!(f64)),
+                "must be a number",
+            ),
+            ("", arg().value_parser(value_parser!(i64)), digits),
             (
                 "99999999999999999999",
                 arg().value_parser(value_parser!(u64)),

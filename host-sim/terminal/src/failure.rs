@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn message_is_one_line_without_control_characters() {
-        let failure = Failure::Input("a\u{1b}[31mb.toml: \u{9b}0m\n  no\tkey".to_owned());
+        let failure = Failure::Input("a\u{1b}[31mb.toml: \u{9b}0m\n \n  no\tkey".to_owned());
         assert_eq!(failure.to_string(), r"a\u{1b}[31mb.toml: \u{9b}0m no\tkey");
     }
 }

@@ -90,6 +90,49 @@ mod tests {
         assert_eq!(wrapped(&format!("a {long}"), 4), format!("a\n    {long}"));
     }
 
+    /// Of words of 9 letters, eight fill 79 columns with their spaces; with an indent of 8 columns there are seven a
+    /// line. A letter of several bytes has one column.
+    #[test]
+    fn every_line_has_as_many_words_as_its_columns_take() {
+        for letter in ["x", "µ"] {
+            let word = letter.repeat(9);
+            let words = |number: usize| vec![&*word; number].join(" ");
+            let indent = " ".repeat(8);
+            let lines = [8, 7, 7, 1].map(words).join(&format!("\n{indent}"));
+            assert_eq!(wrapped(&words(23), 8), lines);
+        }
+    }
+
+    /// The shell says what it reads.
+    #[cfg(unix)]
+    #[test]
+    fn quoted_argument_is_one_word_for_a_shell() {
+        for argument in [
+            "",
+            "plain-1.csv",
+            "a b",
+            "it's",
+            "''",
+            "$HOME",
+            "~",
+            "*",
+            "a;b",
+            "a\\b",
+            "#",
+            "\"",
+            "a\nb",
+            "µ=1,2",
+        ] {
+            let line = format!("printf '<%s>' {} end", quoted(OsStr::new(argument)));
+            let read = std::process::Command::new("sh")
+                .args(["-c", &line])
+                .output();
+            let read = String::from_utf8(read.unwrap().stdout).unwrap();
+            assert_eq!(read, format!("<{argument}><end>"), "{line}");
+        }
+        assert_eq!(quoted(OsStr::new("a-1.csv")), "a-1.csv");
+    }
+
     #[test]
     fn similar_name_is_suggested_and_a_different_one_is_not() {
         let known = ["wall", "free-air", "excite"];
@@ -101,5 +144,7 @@ mod tests {
             unknown("scene", "q", known),
             "no scene 'q'; there are wall, free-air, excite"
         );
+        // A name is in one line.
+        assert!(unknown("scene", "a\nb", known).starts_with(r"no scene 'a\nb'; "));
     }
 }

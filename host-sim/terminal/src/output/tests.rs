@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use super::{check_place, is_same, write_whole};
+use super::{check_place, is_same, is_stdout, write_whole};
 
 #[test]
 fn paths_of_one_file_are_the_same() {
@@ -15,11 +15,19 @@ fn paths_of_one_file_are_the_same() {
     // A file that is not there yet.
     let [new, same] = ["new.csv", "./new.csv"].map(|name| folder.join(name));
     assert!(is_same(&new, &same) && !is_same(&new, &file));
+    let deep = folder.join("deep");
+    std::fs::create_dir(&deep).unwrap();
+    assert!(is_same(&new, &deep.join("../new.csv")));
+    assert!(is_same(&deep, &folder.join("./deep")) && !is_same(&deep, folder));
     #[cfg(unix)]
     {
         let link = folder.join("link.csv");
         std::os::unix::fs::symlink("a.csv", &link).unwrap();
         assert!(is_same(&link, &file));
+        let to_deep = folder.join("to-deep");
+        std::os::unix::fs::symlink("deep", &to_deep).unwrap();
+        assert!(is_same(&to_deep, &deep));
+        assert!(is_same(&to_deep.join("new.csv"), &deep.join("new.csv")));
         for no_file in ["/dev/null", "-", "/dev/stdout"] {
             assert!(
                 !is_same(Path::new(no_file), Path::new(no_file)),
@@ -110,4 +118,41 @@ fn failed_write_leaves_nothing() {
     assert!(error.to_string().contains("deep: cannot write"), "{error}");
     let left: Vec<_> = std::fs::read_dir(folder).unwrap().collect();
     assert_eq!(left.len(), 1);
+}
+
+/// Linux follows 40 links and no more.
+#[cfg(target_os = "linux")]
+#[test]
+fn as_many_links_are_followed_as_by_the_system() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let link = |number: usize| folder.join(number.to_string());
+    write_whole(&link(0), b"old").unwrap();
+    for number in 1..=41 {
+        std::os::unix::fs::symlink((number - 1).to_string(), link(number)).unwrap();
+    }
+    assert!(std::fs::read(link(40)).is_ok() && std::fs::read(link(41)).is_err());
+    write_whole(&link(40), b"new").unwrap();
+    assert_eq!(std::fs::read(link(0)).unwrap(), b"new");
+    let said = write_whole(&link(41), b"x").unwrap_err().to_string();
+    assert!(
+        said.ends_with("41: cannot write: too many symbolic links; choose another path"),
+        "{said}"
+    );
+    let is_link = |number| {
+        std::fs::symlink_metadata(link(number))
+            .unwrap()
+            .is_symlink()
+    };
+    assert!((1..=41).all(is_link) && !is_link(0));
+}
+
+#[test]
+fn names_of_standard_output_are_known_and_other_descriptors_are_not() {
+    for name in ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"] {
+        assert!(is_stdout(Path::new(name)), "{name}");
+    }
+    for name in ["/dev/stderr", "/dev/fd/2", "./-", "stdout"] {
+        assert!(!is_stdout(Path::new(name)), "{name}");
+    }
 }
