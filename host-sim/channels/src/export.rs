@@ -295,4 +295,34 @@ mod tests {
         let expected: Vec<u8> = [9].into_iter().chain((-1.5_f64).to_le_bytes()).collect();
         assert_eq!(*message.data, expected);
     }
+
+    /// The float nearest to a multiple of 0.1 ms may be below it.
+    #[test]
+    fn message_has_the_number_of_its_row_and_its_time_in_ns() {
+        let rows: Vec<_> = (0..2000).map(|k| [1e-4 * f64::from(k), 1.0]).collect();
+        let bytes = mcap(rows.iter().map(|row| &row[..]), &[]).unwrap();
+        let mut read = 0;
+        for (k, message) in (0..).zip(mcap::MessageStream::new(&bytes).unwrap()) {
+            let message = message.unwrap();
+            let times = [message.log_time, message.publish_time];
+            assert_eq!((message.sequence, times), (k, [100_000 * u64::from(k); 2]));
+            assert_eq!(message.channel.message_encoding, "protobuf");
+            read += 1;
+        }
+        assert_eq!(read, 2000);
+    }
+
+    /// A value of zero is known, and so is one beyond all numbers.
+    #[test]
+    fn zero_and_infinity_are_written() {
+        for value in [0.0, f64::INFINITY] {
+            let bytes = mcap([[0.0, value].as_slice()].into_iter(), &[]).unwrap();
+            let messages: Vec<_> = mcap::MessageStream::new(&bytes).unwrap().collect();
+            let [Ok(message)] = &messages[..] else {
+                panic!("one message, of the only topic with a value");
+            };
+            let expected: Vec<u8> = [9].into_iter().chain(value.to_le_bytes()).collect();
+            assert_eq!(*message.data, expected, "{value}");
+        }
+    }
 }
