@@ -13,6 +13,22 @@ const CORE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../estimator-core");
 const LOCK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock");
 
 const ROWS: usize = 200;
+const RATE_HZ: f64 = 2e3;
+
+/// A device and a rate of which no value is that of the default.
+fn setup() -> Setup {
+    let mut setup = Setup::default();
+    setup.rate.0 = RATE_HZ;
+    let stages = &mut setup.stages;
+    stages.large.counts_per_rev = 1000;
+    stages.large.inertia *= 1.3;
+    stages.large.torque_constant *= 0.8;
+    stages.large.coulomb_friction *= 0.7;
+    stages.small.counts_per_rev = 2000;
+    stages.damping *= 1.2;
+    stages.amplifier_bandwidth.0 *= 0.5;
+    setup
+}
 
 /// A trace with all signals: a shaft that goes forward, turns and stops.
 fn trace() -> Trace {
@@ -20,20 +36,20 @@ fn trace() -> Trace {
     let counts: Vec<u32> = (0..ROWS).map(position).collect();
     let edge = |k: usize| {
         (k > 0 && counts[k] != counts[k - 1]).then(|| EdgeStamp {
-            age_s: 42_000.0 / 84e6,
+            age_s: 21_000.0 / 84e6,
             boundary: counts[k].max(counts[k - 1]),
         })
     };
     let mut last = None;
     let edges = (0..ROWS).map(|k| {
         last = edge(k).or(last.map(|stamp: EdgeStamp| EdgeStamp {
-            age_s: stamp.age_s + 1e-3,
+            age_s: stamp.age_s + 1.0 / RATE_HZ,
             ..stamp
         }));
         last
     });
     Trace {
-        rate_hz: 1e3,
+        rate_hz: RATE_HZ,
         counts_small: Some(counts.iter().map(|count| count / 2).collect()),
         current: Some((0..ROWS).map(|k| 0.25 * (k % 3) as f64).collect()),
         edges: Some(edges.collect()),
@@ -93,7 +109,7 @@ fn program(trace: &Trace, setup: &Setup) -> String {
 
 #[test]
 fn pasted_lines_compile_and_give_the_same_velocities() {
-    let (trace, setup) = (trace(), Setup::default());
+    let (trace, setup) = (trace(), setup());
     // Below the build's own folder, so that nothing is left elsewhere.
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pasted");
     fs::create_dir_all(folder.join("src")).unwrap();

@@ -306,6 +306,26 @@ mod tests {
     }
 
     #[test]
+    fn header_has_the_constants_of_the_device_in_si_units_and_the_edge_clock() {
+        let kind = Kind::named("observer-edge").unwrap();
+        let mut setup = Setup::default();
+        setup.stages.large.inertia = 0.00025;
+        setup.stages.large.torque_constant = 0.03;
+        setup.stages.damping = 0.002;
+        let values = Parameters::default().values(kind, &setup, PlantKind::Friction);
+        let header = |clock| kind.c(&setup, Hertz(clock), &values, None).unwrap();
+        let [slow, fast] = [1e6, 2e6].map(header);
+        let said = "   edges stamped at 1000000 Hz,\n   J = 0.00025 kg m^2,\n   Kt = 0.03 N m/A,\n   b = 0.002 N m s/rad,\n";
+        assert!(slow.contains(said), "{slow}");
+        // Ages of edges are in other units.
+        let words = |header: &str| -> Vec<_> {
+            let lines = header.lines().filter(|line| line.contains("UINT32_C"));
+            lines.map(str::to_owned).collect()
+        };
+        assert_ne!(words(&slow), words(&fast));
+    }
+
+    #[test]
     fn shortest_length_that_is_sufficient_is_taken() {
         for (n, capacity) in [("4", "15"), ("15", "15"), ("16", "64"), ("64", "64")] {
             let said = header("foaw-end-fit", &format!("foaw-end-fit.n={n}"));
