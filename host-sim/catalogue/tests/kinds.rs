@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use catalogue::estimators::{Estimator, Kind, Lack, Reports, Setup, sample};
-use catalogue::parameters::{Parameters, PlantKind, read};
+use catalogue::parameters::{Parameters, PlantKind, Presets, read};
 use estimator_core::{Signals, VelocityEstimator as _};
 use simulation::trace::{EdgeStamp, Trace};
 
@@ -178,4 +178,91 @@ fn presets_file_gives_the_values_of_its_estimators() {
     );
     let error = read(folder.path()).unwrap_err().to_string();
     assert!(error.contains(": cannot read: "), "{error}");
+}
+
+/// A coarser encoder and a lower rate both lower the bandwidth, here below the lowest one.
+#[test]
+fn scaled_value_at_the_end_of_its_range_is_named() {
+    let pll = kind("pll");
+    let lowest = pll.parameters[0].lowest;
+    let layer = |bandwidth: f64| {
+        let text = format!(
+            "[[preset]]\nrate_hz = 1000\nplant = 'friction'\ncounts_per_rev = 4096\n\
+             estimators = {{ pll = {{ bandwidth_hz = {bandwidth:?} }} }}\n"
+        );
+        Presets::parse(&text, "mine.toml").unwrap()
+    };
+    let mut parameters = Parameters::default();
+    parameters.layer(layer(lowest));
+    let at_ends = |parameters: &Parameters, rate_hz: f64, counts: u32| {
+        let mut setup = Setup::default();
+        setup.rate.0 = rate_hz;
+        setup.stages.large.counts_per_rev = counts;
+        parameters.at_range_ends(pll, &setup, PlantKind::Friction)
+    };
+    let name = ["bandwidth_hz"];
+    assert_eq!(at_ends(&parameters, 1000.0, 4096), [""; 0]);
+    assert_eq!(at_ends(&parameters, 1000.0, 64), name);
+    assert_eq!(at_ends(&parameters, 100.0, 4096), name);
+    assert_eq!(at_ends(&parameters, 10_000.0, 4096), [""; 0]);
+    // A value of another file, or one that is set, comes first.
+    let mut other = parameters.clone();
+    other.layer(layer(100.0 * lowest));
+    assert_eq!(at_ends(&other, 1000.0, 64), [""; 0]);
+    parameters.set("pll.bandwidth_hz=20").unwrap();
+    assert_eq!(at_ends(&parameters, 1000.0, 64), [""; 0]);
+}
+
+#[test]
+fn spaces_around_the_parts_of_a_set_value_are_no_part_of_them() {
+    let mut parameters = Parameters::default();
+    parameters.set(" pll . bandwidth_hz = 20 ").unwrap();
+    let values = parameters.values(kind("pll"), &Setup::default(), PlantKind::Friction);
+    assert_eq!(values, [20.0]);
+}
+
+#[test]
+fn most_counts_of_a_possible_design_are_named_with_the_command_for_a_log() {
+    let mut compared = 0;
+    for kind in Kind::all() {
+        for (counts, rate_hz) in [(100_000, 100.0), (1_000_000, 100.0), (1_000_000, 1000.0)] {
+            let at = |counts| {
+                let mut setup = Setup::default();
+                setup.rate.0 = rate_hz;
+                setup.stages.large.counts_per_rev = counts;
+                setup
+            };
+            let values = Parameters::default().values(kind, &at(counts), PlantKind::Friction);
+            let Err(refused) = kind.build(&at(counts), &values) else {
+                continue;
+            };
+            let Some(fewer) = kind.coarser(&at(counts), &values) else {
+                continue;
+            };
+            let is_possible = |counts| kind.build(&at(counts), &values).is_ok();
+            let halved: Vec<_> = (1..20).map(|k| counts >> k).collect();
+            let first = halved.into_iter().find(|counts| is_possible(*counts));
+            assert_eq!(Some(fewer), first, "{} {counts} {rate_hz}", kind.name);
+            let said = format!(
+                "; with {fewer} counts/rev it is possible, for a log by host-sim coarsen --fine-counts-per-rev {counts} \
+                 --counts-per-rev {fewer} --rate {rate_hz}, or take another estimator, as imm"
+            );
+            assert!(refused.to_string().ends_with(&said), "{refused}");
+            let why = kind.refusal(&at(counts), &values).unwrap();
+            assert!(why.starts_with(&format!("at {rate_hz} Hz: ")), "{why}");
+            assert_eq!(kind.refusal(&at(fewer), &values), None);
+            compared += 1;
+        }
+    }
+    assert!(compared > 0);
+}
+
+#[test]
+fn unknown_parameter_is_answered_with_those_that_there_are() {
+    let said = |name: &str| kind(name).parameter("gain").unwrap_err().to_string();
+    assert_eq!(
+        said("finite-difference"),
+        "finite-difference has no parameter 'gain': it has none at all"
+    );
+    assert!(said("pll").starts_with("pll has no parameter 'gain'; there are bandwidth_hz"));
 }
