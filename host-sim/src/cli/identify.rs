@@ -9,7 +9,7 @@ use experiments::identify::{self, Known, Quantity};
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use report::{self, Printout};
 use terminal::failure::Failure;
-use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
+use terminal::output::{Folder, is_stdout, note, print_text, write_whole};
 
 use super::arguments::open_logs;
 use super::page;
@@ -137,5 +137,5 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     {
         return Ok(());
     }
-    print_bytes(identify::text(&found).as_bytes())
+    print_text(&identify::text(&found))
 }

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use report;
 use terminal::failure::Failure;
-use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
+use terminal::output::{Folder, is_stdout, print_bytes, print_text, write_whole};
 
 /// Period at which a spinner turns.
 const SPIN: Duration = Duration::from_millis(200);
@@ -71,7 +71,7 @@ pub(super) fn print(json_file: Option<&Path>, json: &[u8], text: &str) -> Result
         Some(path) => write_whole(path, json)?,
         None => {}
     }
-    print_bytes(text.as_bytes())
+    print_text(text)
 }
 
 /// Refuses more than one file on standard output. A file is given by its option and its path.

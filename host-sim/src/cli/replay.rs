@@ -15,7 +15,7 @@ use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::{Motion, Parts};
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, note, print_bytes, write_whole};
+use terminal::output::{is_stdout, note, print_text, write_whole};
 use terminal::wording::wrapped;
 
 use super::arguments::{ParameterOptions, kinds};
@@ -201,7 +201,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         Some(_) => String::new(),
         None => replay::table(&rows, with_coupler, terminal_width()),
     };
-    print_bytes(format!("{header}\n{table}").as_bytes())
+    print_text(&format!("{header}\n{table}"))
 }
 
 /// Where the device comes from, and where its counts per revolution do if they are not its own: `is_stated` if the

@@ -13,7 +13,7 @@ use experiments::tune::{
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use shards::{Experiment, Part};
 use terminal::failure::Failure;
-use terminal::output::{check_place, is_stdout, note, print_bytes, write_whole};
+use terminal::output::{check_place, is_stdout, note, print_text, write_whole};
 
 use super::arguments::{check_rates, distinct, kinds, open_logs, scenarios};
 use super::rates::{TUNED_HZ, rate_help, repeatable};
@@ -210,7 +210,7 @@ fn write(
     write_whole(file, text.as_bytes())?;
     match is_stdout(file) {
         true => Ok(()),
-        false => print_bytes(format!("{table}{}\n", file.display()).as_bytes()),
+        false => print_text(&format!("{table}{}\n", file.display())),
     }
 }
 

@@ -12,7 +12,7 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::wording::harmless;
+use crate::wording::harmless_lines;
 pub use folder::Folder;
 use partial::Partial;
 
@@ -193,12 +193,19 @@ pub fn print_to_reader(bytes: &[u8]) -> Result<bool, Failure> {
     written.map_err(|error| no_output(&error))
 }
 
+/// Writes a text for a person to standard output, with control characters of names and texts escaped; see
+/// [`print_bytes`].
+///
+/// # Errors
+/// [`Failure::Input`] on any failure but that of a pipe whose reader has closed it.
+pub fn print_text(text: &str) -> Result<(), Failure> {
+    print_bytes(harmless_lines(text).as_bytes())
+}
+
 /// Writes lines to standard error, with control characters of names and texts escaped. A closed standard error
 /// does not end the command.
 pub fn note(lines: impl std::fmt::Display) {
-    let lines = lines.to_string();
-    let lines: Vec<_> = lines.split('\n').map(harmless).collect();
-    let _ = writeln!(io::stderr(), "{}", lines.join("\n"));
+    let _ = writeln!(io::stderr(), "{}", harmless_lines(&lines.to_string()));
 }
 
 fn print_with(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {

@@ -52,6 +52,13 @@ pub(crate) fn harmless(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped)
 }
 
+/// The lines of `text`, each as by [`harmless`].
+#[must_use]
+pub(crate) fn harmless_lines(text: &str) -> String {
+    let lines: Vec<_> = text.split('\n').map(harmless).collect();
+    lines.join("\n")
+}
+
 /// `argument` as a shell reads it, with quotes where it needs them.
 #[must_use]
 pub fn quoted(argument: &OsStr) -> String {
@@ -101,6 +108,12 @@ mod tests {
             let lines = [8, 7, 7, 1].map(words).join(&format!("\n{indent}"));
             assert_eq!(wrapped(&words(23), 8), lines);
         }
+    }
+
+    #[test]
+    fn lines_of_a_text_are_kept_and_their_control_characters_escaped() {
+        let text = "a\u{1b}[31mb:\n\n  \u{9b}0m\tµ\n";
+        assert_eq!(harmless_lines(text), "a\\u{1b}[31mb:\n\n  \\u{9b}0m\\tµ\n");
     }
 
     /// The shell says what it reads.

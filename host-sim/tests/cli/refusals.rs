@@ -165,6 +165,17 @@ fn control_characters_of_files_do_not_reach_the_terminal() {
         assert!(line.contains(said), "{line:?}");
         assert!(!line.trim_end().contains(char::is_control), "{line:?}");
     }
+    // The result and the notes of a run have the name of its recording.
+    let name = "a\u{1b}[31mb.csv";
+    folder.write(name, "t,counts_large\n0,1\n0.001,2\n0.002,3\n");
+    let ran = folder.run(&["replay", name, "--estimator", "pll", "--out", "v.csv"]);
+    for output in [ran.stdout, ran.stderr] {
+        let text = String::from_utf8(output).unwrap();
+        assert!(
+            text.contains(r"a\u{1b}[31mb.csv: ") && !text.contains('\u{1b}'),
+            "{text:?}"
+        );
+    }
 }
 
 /// A damping in mN.m.s/rad makes the coupler too stiff for the step of the plant, which not every command has.

@@ -156,3 +156,20 @@ fn names_of_standard_output_are_known_and_other_descriptors_are_not() {
         assert!(!is_stdout(Path::new(name)), "{name}");
     }
 }
+
+/// As a file that a shell has opened for a program.
+#[cfg(target_os = "linux")]
+#[test]
+fn descriptor_is_written_after_what_is_there() {
+    use std::io::{Read as _, Seek as _, Write as _};
+    use std::os::fd::AsRawFd as _;
+
+    let mut file = tempfile::tempfile().unwrap();
+    file.write_all(b"first, ").unwrap();
+    let path = format!("/dev/fd/{}", file.as_raw_fd());
+    write_whole(Path::new(&path), b"then").unwrap();
+    file.rewind().unwrap();
+    let mut text = String::new();
+    file.read_to_string(&mut text).unwrap();
+    assert_eq!(text, "first, then");
+}
