@@ -168,6 +168,40 @@ mod tests {
         assert_eq!(front(points), [(9.0, 3.0), (50.0, 1.0)]);
     }
 
+    /// 10 to 1000 instructions and 0.01 to 10 rad/s around these values, in decades.
+    #[test]
+    fn marks_have_the_cost_across_and_the_error_upwards() {
+        let row = |name: &str, instructions, rms| EstimatorRow {
+            estimator: name.to_owned(),
+            instructions: Some(instructions),
+            score: Score {
+                rms_rad_s: Some(rms),
+                ..Score::default()
+            },
+        };
+        let report = ReportInput {
+            cases: vec![CaseReport {
+                scenario: "step".to_owned(),
+                rate_hz: 1000.0,
+                friction: true,
+                rows: vec![row("pll", 20.0, 1.0), row("observer", 200.0, 0.1)],
+                ..CaseReport::default()
+            }],
+            ..ReportInput::default()
+        };
+        let palette = Palette::new(&report);
+        let groups = groups(&report);
+        let svg = panels(&groups[0], &[], &palette).unwrap().unwrap().0;
+        let width = (WIDTH - LEFT - 14.0 - GAP * 2.0) / 3.0;
+        for (name, cost, error) in [("pll", 20.0_f64, 1.0_f64), ("observer", 200.0, 0.1)] {
+            let mark = crate::canvas::tests::rectangles(&svg, palette.style(name).colour)[0];
+            let x = LEFT + width * (cost / 10.0).log10() / 2.0;
+            let y = TOP + PANEL * (1.0 - (error / 0.01).log10() / 3.0);
+            assert!((mark[0] + MARK - x).abs() < 0.5, "{name}: {mark:?}, {x}");
+            assert!((mark[1] + MARK - y).abs() < 0.5, "{name}: {mark:?}, {y}");
+        }
+    }
+
     #[test]
     fn each_scenario_has_a_panel_and_the_particle_filter_if_it_ran() {
         let row = |name: &str, instructions, rms| EstimatorRow {
@@ -212,6 +246,20 @@ mod tests {
         let groups = groups(&report);
         let palette = Palette::new(&report);
         let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap().0;
+        // In the second panel alone, across its width.
+        let lines = crate::canvas::tests::points(&svg, "polyline", INK);
+        let across = lines.iter().filter(|line| line[1].0 - line[0].0 > 100.0);
+        let lefts: Vec<_> = across.map(|line| line[0].0).collect();
+        let second = LEFT + (WIDTH - LEFT - 14.0 - GAP * 2.0) / 3.0 + GAP;
+        assert_eq!(lefts.len(), 2);
+        // 0.05 rad/s on an axis of the three decades from 0.01 rad/s, around 0.05 and 1 rad/s.
+        let height = TOP + PANEL * (1.0 - 5.0_f64.log10() / 3.0);
+        let is_limit = |line: &&Vec<(f64, f64)>| line.iter().all(|at| (at.1 - height).abs() < 0.5);
+        assert_eq!(lines.iter().filter(is_limit).count(), 2, "{lines:?}");
+        assert!(
+            lefts.iter().all(|left| (left - second).abs() < 0.5),
+            "{lefts:?}"
+        );
         assert_eq!(svg.matches("instructions per update").count(), 2);
         assert!(svg.contains("particle filter: counts") && !svg.contains("unmeasured"));
         // Results of another rate are not drawn.

@@ -74,6 +74,24 @@ mod tests {
         let palette = Palette::of(std::iter::once("adaptive"));
         let svg = chart(&CaseReport::default(), &damping, &palette).unwrap().0;
         assert!(svg.contains("true") && svg.contains("adaptive"));
-        assert!(svg.matches("<polyline").count() >= 2, "{svg}");
+        // The axis is from half to 1.25 times the highest value, which is at two thirds of its height.
+        let y = |milli: f64| TOP + PANEL * (1.25 - milli) / 0.75;
+        let x = |k: f64| LEFT + (WIDTH - 14.0 - LEFT) * k / 3.0;
+        for (colour, values) in [
+            (INK, [1.0, 0.9, 0.8]),
+            (palette.style("adaptive").colour, [1.0, 0.95, 0.8]),
+        ] {
+            let lines = crate::canvas::tests::points(&svg, "polyline", colour);
+            let points: Vec<_> = lines.into_iter().flatten().collect();
+            for (k, value) in [0.0, 1.0, 2.0].into_iter().zip(values) {
+                let is_near = |point: &&(f64, f64)| {
+                    (point.0 - x(k)).abs() < 0.5 && (point.1 - y(value)).abs() < 0.5
+                };
+                assert!(
+                    points.iter().any(|point| is_near(&point)),
+                    "{value}: {points:?}"
+                );
+            }
+        }
     }
 }

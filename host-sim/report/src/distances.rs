@@ -141,3 +141,102 @@ fn number_of(tick: f64) -> String {
         number(tick)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::canvas::tests::{points, rectangles};
+    use super::super::grid::groups;
+    use super::super::{CaseReport, EstimatorRow, ReportInput};
+    use super::*;
+    use scoring::score::Score;
+
+    fn case(scenario: &str, friction: bool, distances: &[(&str, f64)]) -> CaseReport {
+        let row = |&(name, distance): &(&str, f64)| EstimatorRow {
+            estimator: name.to_owned(),
+            score: Score {
+                distance_rad_s: Some(distance),
+                ..Score::default()
+            },
+            ..EstimatorRow::default()
+        };
+        CaseReport {
+            scenario: scenario.to_owned(),
+            rate_hz: 1000.0,
+            friction,
+            rows: distances.iter().map(row).collect(),
+            ..CaseReport::default()
+        }
+    }
+
+    fn drawn(cases: Vec<CaseReport>) -> Option<String> {
+        let report = ReportInput {
+            cases,
+            ..ReportInput::default()
+        };
+        let groups = groups(&report);
+        let groups: Vec<_> = groups.iter().collect();
+        let svg = bars("title", &groups, &Palette::new(&report)).unwrap();
+        svg.map(|svg| svg.0)
+    }
+
+    /// Left end, top, right end and bottom of what is drawn in the colour of an estimator below the legend; the bar
+    /// may have stripes.
+    fn bar(svg: &str, name: &str, row: usize) -> [f64; 4] {
+        let colour = Palette::of(std::iter::once(name)).style(name).colour;
+        let mut rows: Vec<[f64; 4]> = Vec::new();
+        for [left, top, width, height] in rectangles(svg, colour) {
+            let (right, bottom) = (left + width, top + height);
+            match rows.last_mut() {
+                Some(last) if last[1] == top => last[2] = right,
+                _ => rows.push([left, top, right, bottom]),
+            }
+        }
+        rows[row]
+    }
+
+    /// On a logarithmic axis a factor of ten is everywhere as long.
+    #[test]
+    fn bars_are_logarithmic_and_stand_below_each_other() {
+        let svg = drawn(vec![
+            case("step", true, &[("pll", 0.02), ("imm", 0.2)]),
+            case("track", true, &[("pll", 0.2), ("imm", 2.0)]),
+        ]);
+        let svg = svg.unwrap();
+        let [first, second] = [0, 1].map(|row| bar(&svg, "pll", row));
+        let [third, fourth] = [0, 1].map(|row| bar(&svg, "imm", row));
+        let decade = second[2] - first[2];
+        assert!(decade > 100.0, "{decade}");
+        // A stripe may end a little before the end of its bar.
+        assert!((third[2] - second[2]).abs() < 3.0, "{third:?} {second:?}");
+        assert!((fourth[2] - third[2] - decade).abs() < 3.0, "{fourth:?}");
+        // The estimators of a scenario, and then the next scenario with its distance.
+        assert!((third[1] - first[1] - BAR).abs() < 0.5, "{third:?}");
+        let row_height = 2.0 * BAR + BETWEEN;
+        assert!(
+            (second[1] - first[1] - row_height).abs() < 0.5,
+            "{second:?}"
+        );
+        assert!(!svg.contains("all 0") && !svg.contains("not run"));
+        // In the middle between the lines of their scenario.
+        let lines = points(&svg, "polyline", GRID).into_iter();
+        let across = lines.filter(|line| line[0].1 == line[line.len() - 1].1);
+        let tops: Vec<f64> = across.map(|line| line[0].1).collect();
+        assert_eq!(tops.len(), 2);
+        let (above, below) = (first[1] - tops[0], tops[1] - third[3]);
+        assert!((above - below).abs() < 0.5, "{above} {below}");
+    }
+
+    #[test]
+    fn scenario_without_a_distance_or_a_run_says_so() {
+        let svg = drawn(vec![
+            case("step", true, &[("pll", 0.01), ("imm", 0.0)]),
+            case("hold", true, &[("pll", 0.0), ("imm", 0.0)]),
+            case("step", false, &[("pll", 0.01)]),
+        ]);
+        let svg = svg.unwrap();
+        let times = |text: &str| svg.matches(text).count();
+        assert_eq!((times("all 0"), times("not run")), (1, 1));
+        assert!(svg.contains("plant without friction") && svg.contains("plant with friction"));
+        assert!(drawn(vec![case("step", true, &[])]).is_none());
+    }
+}

@@ -55,6 +55,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn mean_of_the_instructions_is_not_their_maximum() {
+        for (name, _, cost) in rows() {
+            assert!(cost.mean <= cost.most, "{name}");
+        }
+        let of_adaptive = cost("adaptive-edge", &BTreeMap::new()).unwrap();
+        assert!(of_adaptive.mean < of_adaptive.most);
+    }
+
+    #[test]
     fn measured_table_is_read() {
         let none = BTreeMap::new();
         let cheap = instructions("finite-difference", &none).unwrap();

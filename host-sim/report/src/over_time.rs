@@ -109,3 +109,60 @@ impl OverTime {
         Ok(explained(figures, self.words))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(rate_hz: f64, friction: bool, seed: u64) -> CaseReport {
+        CaseReport {
+            scenario: "step".to_owned(),
+            rate_hz,
+            friction,
+            seed,
+            traces: Some(Traces::default()),
+            ..CaseReport::default()
+        }
+    }
+
+    #[test]
+    fn lowest_and_highest_rate_with_friction_are_drawn_with_their_first_seed() {
+        let drawn_of = |cases: Vec<CaseReport>| {
+            let report = ReportInput {
+                cases,
+                ..ReportInput::default()
+            };
+            let found = drawn(&report, "step").into_iter();
+            found
+                .map(|case| (case.rate_hz, case.friction, case.seed))
+                .collect::<Vec<_>>()
+        };
+        let mut cases = vec![case(5e3, false, 1), case(5e3, false, 2)];
+        assert_eq!(drawn_of(cases.clone()), [(5e3, false, 1)]);
+        cases.extend([
+            case(1e4, true, 3),
+            case(1e3, true, 4),
+            case(1e3, true, 5),
+            case(5e3, true, 6),
+        ]);
+        assert_eq!(drawn_of(cases), [(1e3, true, 4), (1e4, true, 3)]);
+        let without_signals = CaseReport {
+            traces: None,
+            ..case(1e3, true, 1)
+        };
+        assert_eq!(drawn_of(vec![without_signals]), []);
+    }
+
+    #[test]
+    fn time_is_zero_where_the_step_begins() {
+        let traces = Traces {
+            rate_hz: 1000.0,
+            truth: (0..1000).map(|k| if k < 500 { 0.0 } else { 5.0 }).collect(),
+            estimates: Vec::new(),
+        };
+        let (window, origin) = (STEP_RESPONSE.window)(&traces).unwrap();
+        // 60 ms on both sides.
+        assert_eq!(window, origin - 60..origin + 61);
+        assert!((496..=500).contains(&origin), "{origin}");
+    }
+}

@@ -63,3 +63,57 @@ fn facts(report: &ReportInput) -> Vec<(&'static str, String)> {
         ("seeds", list(seeds.iter().map(u64::to_string).collect())),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::CaseReport;
+    use super::*;
+
+    #[test]
+    fn facts_name_every_rate_seed_and_plant_once_and_in_order() {
+        let case = |rate_hz, friction, seed| CaseReport {
+            rate_hz,
+            friction,
+            seed,
+            ..CaseReport::default()
+        };
+        let mut report = ReportInput {
+            device_name: "mine.toml".to_owned(),
+            cases: vec![
+                case(11_600.0, true, 10),
+                case(1000.0, true, 2),
+                case(1000.0, true, 10),
+                case(1000.0, true, 1),
+            ],
+            ..ReportInput::default()
+        };
+        let told = |report: &ReportInput| {
+            facts(report)
+                .into_iter()
+                .map(|(_, value)| value)
+                .collect::<Vec<_>>()
+        };
+        let rates = "1 kHz, 11.6 kHz";
+        assert_eq!(
+            told(&report),
+            ["mine.toml", "with friction", rates, "1, 2, 10"]
+        );
+        report.cases.push(case(1000.0, false, 1));
+        assert_eq!(told(&report)[1], "without friction and with friction");
+    }
+
+    #[test]
+    fn every_note_is_on_the_page() {
+        let report = ReportInput {
+            notes: ["first note", "second note"].map(str::to_owned).to_vec(),
+            ..ReportInput::default()
+        };
+        let page = page(&report).unwrap();
+        assert!(
+            report
+                .notes
+                .iter()
+                .all(|note| page.contains(&format!("<p>{note}</p>")))
+        );
+    }
+}

@@ -66,3 +66,34 @@ pub(super) fn figure_one(
         canvas.text("velocity, rad/s", middle, Anchor::Upwards, LABEL, INK)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::canvas::tests::points;
+    use super::*;
+
+    /// 0.1 s at 1 kHz, of which the figure shows 51 samples from 20 ms on.
+    #[test]
+    fn estimate_and_truth_are_drawn_over_the_whole_width() {
+        let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
+        let traces = Traces {
+            rate_hz: 1000.0,
+            truth: vec![1.0; 100],
+            estimates: vec![("finite-difference".to_owned(), vec![9.0; 100])],
+        };
+        let palette = Palette::of(["finite-difference"].into_iter());
+        let svg = figure_one("title", &traces, 20..71, 0, &interval, &palette);
+        let svg = svg.unwrap().0;
+        let curve = |colour| {
+            let mut lines = points(&svg, "polyline", colour).into_iter();
+            let line = lines.find(|line| line[line.len() - 1].0 - line[0].0 > 100.0);
+            let line = line.expect("a curve beside the line of the legend");
+            let (first, last) = (line[0], line[line.len() - 1]);
+            assert!((first.0 - LEFT).abs() < 0.5, "{first:?}");
+            assert!((last.0 - (WIDTH - 12.0)).abs() < 0.5, "{last:?}");
+            first.1
+        };
+        let estimate = curve(palette.style("finite-difference").colour);
+        assert!(estimate < curve(TRUTH), "the estimate is faster");
+    }
+}

@@ -225,6 +225,68 @@ mod tests {
     }
 
     #[test]
+    fn heading_has_the_unit_and_the_definition() {
+        let field = Score::field("delay_ms").unwrap();
+        let html = head(field).into_string();
+        assert!(html.contains("<small>ms</small>"), "{html}");
+        let caption = "<caption>1 kHz, plant without friction</caption>";
+        assert!(table(&[("pll", delay(1.0))]).contains(caption));
+        assert!(
+            html.contains("title=\"Shift of the truth that minimises the RMS error, ms"),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn share_inside_is_what_is_not_outside_and_the_largest_is_best() {
+        let row = |name: &str, outside| EstimatorRow {
+            estimator: name.to_owned(),
+            score: Score {
+                outside: Some(outside),
+                ..Score::default()
+            },
+            ..EstimatorRow::default()
+        };
+        let case = |friction, rows| CaseReport {
+            scenario: "step".to_owned(),
+            rate_hz: 1000.0,
+            friction,
+            rows,
+            ..CaseReport::default()
+        };
+        let report = ReportInput {
+            cases: vec![
+                case(false, vec![row("pll", 0.25), row("imm", 0.5)]),
+                case(true, vec![row("pll", 0.75), row("imm", 0.5)]),
+            ],
+            ..ReportInput::default()
+        };
+        let html = inside(&grid::groups(&report), &Palette::new(&report))
+            .unwrap()
+            .into_string();
+        let heads = ["without", "with"]
+            .map(|plant| format!("<th>1 kHz<small>{plant} friction</small></th>"));
+        assert!(html.contains(&heads.concat()), "{html}");
+        let cells: Vec<_> = html
+            .split("<td")
+            .skip(1)
+            .map(|cell| {
+                (
+                    cell.contains("class=\"best\""),
+                    cell.split(['>', '<']).nth(1).unwrap(),
+                )
+            })
+            .collect();
+        let expected = [
+            (true, "75\u{a0}%"),
+            (false, "25\u{a0}%"),
+            (false, "50\u{a0}%"),
+            (true, "50\u{a0}%"),
+        ];
+        assert_eq!(cells, expected);
+    }
+
+    #[test]
     fn single_or_equal_values_have_no_best() {
         assert!(!table(&[("a", delay(0.5))]).contains("best"));
         assert!(!table(&[("a", delay(0.5)), ("b", delay(0.5))]).contains("best"));

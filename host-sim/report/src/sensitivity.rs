@@ -154,6 +154,14 @@ mod tests {
         let all: Vec<&SensitivityRow> = rows.iter().collect();
         let points = curve(&all, "pll", Constant::Damping);
         assert_eq!(points, [(-30.0, 40.0), (0.0, 50.0), (30.0, 60.0)]);
+        // The mean of the scenarios in which the motor moves, here two of three.
+        let other = |scenario, pct| SensitivityRow {
+            scenario,
+            ..row("pll", Some("damping"), 0.3, pct)
+        };
+        let more = [other("track", 90.0), other("hold", 1000.0)];
+        let with_more: Vec<_> = rows.iter().chain(&more).collect();
+        assert_eq!(curve(&with_more, "pll", Constant::Damping)[2], (30.0, 75.0));
         let printout = Printout {
             command: "host-sim sensitivity",
             device: "a & b",

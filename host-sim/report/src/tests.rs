@@ -35,6 +35,9 @@ fn full_report_has_every_figure_and_no_broken_number() {
         "class=\"verdict\"",
         "host-sim compare --seed 1",
         "is 1.53\u{a0}rad/s for a finite difference, or 42.1\u{a0}mN at the fingertip",
+        "The threshold of a fingertip is 10.0\u{a0}mN",
+        "Spectrum of the velocity error, scenario track, plant with friction",
+        "Finite difference at 1 kHz, scenario step, plant with friction",
     ] {
         assert!(page.contains(text), "{text}");
     }
@@ -44,6 +47,18 @@ fn full_report_has_every_figure_and_no_broken_number() {
         assert!(!outside_script.contains(bad), "{bad}");
     }
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
+}
+
+#[test]
+fn figure_of_the_quantisation_is_that_of_finite_difference() {
+    let page = html(&demo::report(&[])).unwrap();
+    let one = figures(&page)
+        .find(|svg| svg.contains("figure 1)"))
+        .unwrap();
+    assert!(
+        one.contains("\nfinite-difference\n") && !one.contains("\nlow-pass\n"),
+        "{one}"
+    );
 }
 
 #[test]

@@ -72,6 +72,7 @@ mod tests {
             (0.3646, "0.365"),
             (0.999_6, "1.00"),
             (1.534, "1.53"),
+            (9.996, "10.0"),
             (-42.07, "\u{2212}42.1"),
             (99.96, "100"),
             (168.3, "168"),
@@ -85,9 +86,12 @@ mod tests {
     fn rates_are_in_khz_and_shares_keep_a_decimal_near_the_ends() {
         assert_eq!(rate(11_600.0), "11.6 kHz");
         assert_eq!(rate(1000.0), "1 kHz");
+        assert_eq!(rate(1250.0), "1.25 kHz");
         assert_eq!(rate(500.0), "500 Hz");
         assert_eq!(share(0.5), "50\u{a0}%");
         assert_eq!(share(0.9968), "99.7\u{a0}%");
+        assert_eq!(share(0.032), "3.2\u{a0}%");
+        assert_eq!(share(0.0), "0\u{a0}%");
         assert_eq!(share(1.0), "100\u{a0}%");
     }
 }
