@@ -15,7 +15,7 @@ pub fn instructions(estimator: &str, parameters: &BTreeMap<&'static str, f64>) -
 
 /// Instructions per update on a Cortex-M4F over the traces of `cargo pareto` at 1 and 10 kHz, at
 /// `opt-level` 3; `None` for an estimator that was not measured. The cost of FOAW depends on its
-/// window n: the row with the nearest n counts.
+/// window n: the row counts whose n is nearest by ratio.
 #[must_use]
 pub fn cost(estimator: &str, parameters: &BTreeMap<&'static str, f64>) -> Option<Cost> {
     let n = parameters.get("n").copied().unwrap_or(1.0);

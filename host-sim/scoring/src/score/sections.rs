@@ -196,7 +196,8 @@ mod tests {
         for infinite in [score.rms_rad_s, score.max_rad_s, score.p99_rad_s] {
             assert_eq!(infinite, Some(f64::INFINITY));
         }
-        assert_eq!([score.delay_ms, score.noise_rad_s], [None; 2]);
+        let unknown = [score.delay_ms, score.noise_rad_s, score.chatter_rad_s];
+        assert_eq!(unknown, [None; 3]);
     }
 
     /// A section at rest has no delay, and one of twice the speed has four times the weight.

@@ -64,7 +64,11 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
             let own = names(separator, text, named);
             // A comment may have blanks between its names, and the rows commas.
             let other = Separator::ALL.into_iter().map(|other| other.split(text));
-            let mut other = other.filter(|names| names.len() == named && name_columns(names));
+            let is_whole =
+                |name: &String| !name.contains([',', ';']) && !name.starts_with(['(', '[']);
+            let mut other = other.filter(|names| {
+                names.len() == named && names.iter().all(is_whole) && name_columns(names)
+            });
             match own.len() == named {
                 true => own,
                 false => other.next().unwrap_or(own),

@@ -190,16 +190,25 @@ fn quotes_around_nothing_are_a_blank_line() {
 
 #[test]
 fn names_with_blanks_between_them_are_above_rows_with_commas() {
-    for names in ["# time_ms counts", "time_ms\tcounts", "% time_ms; counts"] {
+    for names in [
+        "# time_ms counts",
+        "time_ms\tcounts",
+        "% time_ms; counts",
+        "# time[ms] pos[counts]",
+    ] {
         let recording = read(&format!("{names}\n{ROWS}"), "").unwrap();
         assert_eq!(counts(&recording), [0, 3, 6, 9], "{names}");
-        let recording = read(&format!("{names}\n{ROWS}"), "t=1:ms,counts_large=counts").unwrap();
+        let recording = read(&format!("{names}\n{ROWS}"), "t=1:ms,counts_large=2:counts").unwrap();
         assert_eq!(counts(&recording), [0, 3, 6, 9], "{names}");
     }
     // Words that are no names of a time and a position, or of more columns.
-    for words in ["# motor two", "# time_ms of counts"] {
+    for words in [
+        "# motor two",
+        "# time_ms of counts",
+        "time (ms),position,gain=1",
+    ] {
         let error = read(&format!("{words}\n{ROWS}"), "").unwrap_err();
-        assert!(error.contains("there are no names"), "{error}");
+        assert!(error.contains("2 columns, separated by ','; "), "{error}");
     }
 }
 
