@@ -18,6 +18,7 @@ mod cell;
 mod events;
 mod noises;
 mod sections;
+mod shaft;
 mod state;
 mod sweeps;
 mod thinned;
@@ -35,6 +36,7 @@ use simulation::trace::Trace;
 use crate::table::number;
 
 pub use sections::interruptions;
+pub use shaft::ShaftMotion;
 pub use truth::TruthCheck;
 
 use sections::Motion;

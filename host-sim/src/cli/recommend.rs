@@ -6,6 +6,7 @@ use clap::Args;
 
 use catalogue::estimators::Kind;
 use experiments::recommend::{self, Settings, recommend};
+use experiments::reference::ShaftMotion;
 use experiments::rows::json;
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::{DeviceFile, RecordingOptions};
@@ -114,7 +115,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         let rows: Vec<_> = logs
             .iter()
             .map(|(name, log)| {
-                let motion = log.motion().line(counts_per_rev);
+                let motion = ShaftMotion::of(log).line(counts_per_rev);
                 let rows = log.t.len();
                 format!("{name}: {rows} rows at {} Hz, {motion}", log.trace.rate_hz)
             })

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use experiments::reference::TruthCheck;
+use experiments::reference::{ShaftMotion, TruthCheck};
 use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::{Motion, Parts};
+use recordings::recording::Parts;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_text, write_whole};
 use terminal::wording::wrapped;
@@ -118,7 +118,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
         summary: BoardSummary::default(),
         truth: TruthCheck::default(),
-        motion: Motion::default(),
+        motion: ShaftMotion::default(),
         counts_per_rev: device.stages.large.counts_per_rev,
         bar: progress(
             rows.div_ceil(section_rows(rows)) * run.estimates.len(),

@@ -2,6 +2,7 @@
 //! or is refused with one line.
 
 mod commands;
+mod interrupted;
 mod motion;
 mod notes;
 mod packed;

@@ -4,10 +4,10 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use experiments::reference::{Reference, TruthCheck};
+use experiments::reference::{Reference, ShaftMotion, TruthCheck};
 use experiments::replay::{self, BoardSummary, Run};
 use indicatif::ProgressBar;
-use recordings::recording::{Motion, Parts};
+use recordings::recording::Parts;
 use terminal::failure::Failure;
 use terminal::output::write_with;
 
@@ -17,7 +17,7 @@ pub(super) struct Passes<'a> {
     pub(super) summary: BoardSummary,
     /// Whether the true velocity is that of the counts.
     pub(super) truth: TruthCheck,
-    pub(super) motion: Motion,
+    pub(super) motion: ShaftMotion,
     pub(super) counts_per_rev: u32,
     pub(super) bar: ProgressBar,
     /// Rows of a section.
@@ -42,7 +42,7 @@ impl Passes<'_> {
         }
         self.passed = self.passed.end..self.passed.end + rows.t.len();
         self.truth.add(&rows, self.counts_per_rev);
-        self.motion.add(&rows.t, &rows.trace.counts_large);
+        self.motion.add(&rows);
         if let (Some(reference), true) = (self.reference, self.scores) {
             reference.to_trace(&mut rows.trace, self.passed.clone());
         }

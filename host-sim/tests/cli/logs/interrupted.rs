@@ -1,0 +1,42 @@
+//! Rows that are no motion: what is printed of them.
+
+use crate::{Folder, HOST_SIM};
+
+/// The numbers before the units of the line on the motion: revolutions, and rad/s.
+fn motion(text: &str) -> [f64; 2] {
+    let words: Vec<_> = text.split_whitespace().collect();
+    let said = words.join(" ");
+    let (_, line) = said.split_once("the shaft turns within ").unwrap();
+    let (turns, rest) = line.split_once(" rev, at up to ").unwrap();
+    let (speed, _) = rest.split_once(" rad/s").unwrap();
+    [turns, speed].map(|number| number.parse().unwrap())
+}
+
+/// A swing of 30 degrees and 5 rad/s at 100 Hz, whose first position is another one.
+#[test]
+fn header_has_the_motion_without_a_jump() {
+    let folder = Folder::new(HOST_SIM);
+    let row = |k: u32| {
+        let t = 0.01 * f64::from(k);
+        let angle = if k == 0 {
+            170.0
+        } else {
+            30.0 * (5.0 * t).sin()
+        };
+        format!("{t:.2},{angle:.3}\n")
+    };
+    let rows: String = (0..1000).map(row).collect();
+    folder.write("log.csv", format!("t,angle_deg\n{rows}"));
+    let speed = 5.0 * 30.0_f64.to_radians();
+    let ways: [&[&str]; 2] = [
+        &["recommend", "log.csv"],
+        &["replay", "log.csv", "--estimator", "pll", "--out", "v.csv"],
+    ];
+    for arguments in ways {
+        let [within, up_to] = motion(&folder.good(arguments));
+        // A count of 4096 at both ends.
+        assert!((within - 60.0 / 360.0).abs() < 2.0 / 4096.0, "{within}");
+        // A count in 10 ms is 0.15 rad/s.
+        assert!((up_to - speed).abs() < 0.16, "{up_to} {speed}");
+    }
+}
