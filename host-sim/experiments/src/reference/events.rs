@@ -84,7 +84,7 @@ pub(super) fn events(
             events.push(t, origin, Kind::Bad, false);
             continue;
         }
-        let jumped = matches!(rows[k], Row::Jumped | Row::Resumed);
+        let jumped = matches!(rows[k], Row::Jumped | Row::Returned | Row::Resumed);
         // It is not known on which side of a jump an edge is, nor what the shaft did in a long gap.
         let stamps = trace.edges.as_ref().filter(|_| k > range.start && !jumped);
         if let Some((edge, before)) = stamps.and_then(|e| Some((e[k]?, recording.t[k - 1]))) {

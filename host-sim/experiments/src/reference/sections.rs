@@ -5,11 +5,14 @@
 //! The smoother starts anew after both: rows before and after do not depend on each other. It passes
 //! over a single bad count.
 
+mod returns;
+mod said;
 mod spikes;
 
-use super::Reference;
-use recordings::recording::{LONGEST_GAP, Recording, shown};
-use scoring::score::{SKIP_S, skipped};
+use recordings::recording::{LONGEST_GAP, Recording};
+use scoring::score::skipped;
+
+pub use said::interruptions;
 
 /// A displacement is no motion if it is this number of times larger than the displacements beside it,
 /// plus one count, and than [`USUAL`] of all. An impact has large displacements beside it, and a count
@@ -33,6 +36,8 @@ pub(super) enum Row {
     Next,
     /// It begins another motion: the counter has jumped.
     Jumped,
+    /// It begins another motion: the counter was set to a number to which it is set again and again.
+    Returned,
     /// It begins another motion: a gap of more than [`LONGEST_GAP`] periods is before it.
     Resumed,
     /// Nothing: its count is bad.
@@ -62,15 +67,16 @@ impl Motion {
 const LEAST_KNOWN: f64 = 0.5;
 
 /// Whether an estimate is scored at each of `rows` at `rate_hz`: not at a row that is no motion of a shaft or that
-/// follows a long gap, nor within [`SKIP_S`] after it, as estimators do not know such rows and begin anew. `None` if
-/// it is scored at all of them: there is no such row, or less than [`LEAST_KNOWN`] of the scored rows would be left.
+/// follows a long gap, nor within [`SKIP_S`](scoring::score::SKIP_S) after it, as estimators do not know such rows and
+/// begin anew. `None` if it is scored at all of them: there is no such row, or less than [`LEAST_KNOWN`] of the scored
+/// rows would be left.
 pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
     let passed = skipped(rate_hz).max(1);
     let mut since = passed;
     let is_known = |row: &Row| {
         since = match row {
             Row::Next => since + 1,
-            Row::Jumped | Row::Resumed | Row::Bad => 0,
+            Row::Jumped | Row::Returned | Row::Resumed | Row::Bad => 0,
         };
         since >= passed
     };
@@ -81,69 +87,27 @@ pub(super) fn known(rows: &[Row], rate_hz: f64) -> Option<Vec<bool>> {
     is_part.then_some(known)
 }
 
-/// Times that a message lists.
-const LISTED: usize = 8;
-
-/// One line on the rows of `recording` that are no motion of a shaft, or that follow a long gap; `None` if there are
-/// none. Its scores are against `reference`, or against a true velocity.
-///
-/// Estimators do not know these rows: one of them can decide which estimator has the smallest error.
-#[must_use]
-pub fn interruptions(recording: &Recording, reference: Option<&Reference>) -> Option<String> {
-    let rows = rows(recording);
-    let remedies = [
-        (Row::Bad, "is bad at", "delete these rows"),
-        (Row::Jumped, "jumps at", "cut the log there"),
-        (Row::Resumed, "has a long gap before", "cut the log there"),
-    ];
-    let said = remedies.iter().filter_map(|(kind, what, remedy)| {
-        let of_kind = || {
-            rows.iter()
-                .zip(&recording.t)
-                .filter(|(row, _)| *row == kind)
-        };
-        let times: Vec<_> = of_kind().take(LISTED).map(|(_, t)| shown(*t)).collect();
-        let listed = times.join(", ");
-        let more = match of_kind().skip(LISTED).count() {
-            0 => String::new(),
-            1 => " and at 1 row more".to_owned(),
-            more => format!(" and at {more} rows more"),
-        };
-        (!times.is_empty()).then(|| format!("{what} t = {listed} s{more}: {remedy}"))
-    });
-    let said: Vec<_> = said.collect();
-    let is_left_out = reference.is_some_and(|reference| reference.known.is_some());
-    let has_motion = rows
-        .iter()
-        .all(|row| matches!(row, Row::Next | Row::Resumed));
-    let scores = match (is_left_out, has_motion) {
-        (true, _) => format!("scores leave out these rows and {SKIP_S} s after each"),
-        (false, true) => "all scores contain what estimators do not know there".to_owned(),
-        (false, false) => "all scores contain what is no motion of a shaft".to_owned(),
-    };
-    (!said.is_empty()).then(|| format!("counts_large {}; {scores}", said.join(", and ")))
-}
-
 /// What each row of `recording` says of the motion.
 pub(super) fn rows(recording: &Recording) -> Vec<Row> {
-    let period = recording.trace.period_s();
     let rows = recording.t.len();
-    // Counts per period; rows closer than a period are those of a late clock.
-    let speed = |from: usize, to: usize| {
-        let periods = (recording.t[to] - recording.t[from]) / period;
-        f64::from(displacement(recording, from, to)) / periods.max(1.0)
-    };
-    let [usual, fastest] = usual((1..rows).map(|k| speed(k - 1, k)).collect());
+    let mut kinds = vec![Row::Next; rows];
+    let speeds = Speeds::of(recording);
+    returns::mark(recording, &speeds, &mut kinds);
+    let period = recording.trace.period_s();
+    let speed = |from: usize, to: usize| speeds.between(from, to);
+    let of_motion = (1..rows).filter(|k| kinds[*k] == Row::Next);
+    let [usual, fastest] = usual(of_motion.map(|k| speed(k - 1, k)).collect());
     let jumps = |step: f64, beside: f64| {
         let beside = 1.0 + beside;
         step > JUMP * beside.max(usual) || step > RESET * beside.max(fastest)
     };
-    let mut kinds = vec![Row::Next; rows];
     let (mut last, mut before) = (0, 0.0);
     for (k, kind) in kinds.iter_mut().enumerate().skip(1) {
         let step = speed(last, k);
         let is_last = k + 1 == rows;
-        if recording.t[k] - recording.t[k - 1] > LONGEST_GAP * period {
+        if *kind == Row::Returned {
+            (last, before) = (k, 0.0);
+        } else if recording.t[k] - recording.t[k - 1] > LONGEST_GAP * period {
             *kind = Row::Resumed;
             (last, before) = (k, 0.0);
         } else if !jumps(step, before) {
@@ -159,6 +123,27 @@ pub(super) fn rows(recording: &Recording) -> Vec<Row> {
     }
     spikes::mark(recording, &mut kinds);
     kinds
+}
+
+/// Speeds between rows of a recording, counts per period.
+struct Speeds<'a> {
+    recording: &'a Recording,
+    period: f64,
+}
+
+impl<'a> Speeds<'a> {
+    fn of(recording: &'a Recording) -> Self {
+        Self {
+            recording,
+            period: recording.trace.period_s(),
+        }
+    }
+
+    /// Magnitude of the mean speed from a row to another. Rows closer than a period are those of a late clock.
+    fn between(&self, from: usize, to: usize) -> f64 {
+        let periods = (self.recording.t[to] - self.recording.t[from]) / self.period;
+        f64::from(displacement(self.recording, from, to)) / periods.max(1.0)
+    }
 }
 
 /// Displacement between two rows, counts.
@@ -208,7 +193,7 @@ mod tests {
 
     use super::*;
 
-    fn recording(counts: &[i64]) -> Recording {
+    pub(super) fn recording(counts: &[i64]) -> Recording {
         Recording {
             t: (0..counts.len()).map(|k| k as f64 * 1e-3).collect(),
             trace: Trace {
@@ -227,7 +212,7 @@ mod tests {
     }
 
     /// A motion of three counts a row.
-    fn steady() -> Vec<i64> {
+    pub(super) fn steady() -> Vec<i64> {
         (0..100).map(|k| 3 * k).collect()
     }
 
@@ -277,32 +262,6 @@ mod tests {
     }
 
     #[test]
-    fn interruptions_are_named_with_their_times_and_remedies() {
-        let mut counts = steady();
-        assert_eq!(interruptions(&recording(&counts), None), None);
-        let scores = "all scores contain what is no motion of a shaft";
-        for (k, said) in [(40, "0.04"), (30, "0.03, 0.04"), (50, "0.03, 0.04, 0.05")] {
-            counts[k] += 1 << 20;
-            let line = interruptions(&recording(&counts), None).unwrap();
-            let said = format!("counts_large is bad at t = {said} s: delete these rows; {scores}");
-            assert_eq!(line, said);
-        }
-        counts[60..].iter_mut().for_each(|count| *count += 1 << 20);
-        let line = interruptions(&recording(&counts), None).unwrap();
-        let said = "0.05 s: delete these rows, and jumps at t = 0.06 s: cut the log there; all";
-        assert!(line.contains(said), "{line}");
-        let set = recording(
-            &counts[60..70]
-                .iter()
-                .chain(&counts[..30])
-                .copied()
-                .collect::<Vec<_>>(),
-        );
-        let said = format!("counts_large jumps at t = 0.01 s: cut the log there; {scores}");
-        assert_eq!(interruptions(&set, None), Some(said));
-    }
-
-    #[test]
     fn rows_that_are_no_motion_and_a_tenth_of_a_second_after_are_not_known() {
         let rows = |marked: &[usize]| -> Vec<_> {
             let row = |k| match marked.iter().position(|at| *at == k) {
@@ -329,20 +288,6 @@ mod tests {
         // Of 35 scored rows 18 are left, and 17.
         assert_eq!(unknown(&[5, 10, 15, 38]).map(|rows| rows.len()), Some(17));
         assert_eq!(unknown(&[5, 10, 15, 37]), None);
-    }
-
-    #[test]
-    fn many_interruptions_are_counted() {
-        let mut counts: Vec<_> = (0..300).map(|k| 3 * k).collect();
-        for k in 1..=9 {
-            counts[10 * k] += 1 << 20;
-        }
-        let line = interruptions(&recording(&counts), None).unwrap();
-        let said = "t = 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08 s and at 1 row more: delete";
-        assert!(line.contains(said), "{line}");
-        counts[95] += 1 << 20;
-        let line = interruptions(&recording(&counts), None).unwrap();
-        assert!(line.contains("0.08 s and at 2 rows more: delete"), "{line}");
     }
 
     #[test]

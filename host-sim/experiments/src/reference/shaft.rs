@@ -69,7 +69,7 @@ impl ShaftMotion {
         let (_, last) = self.last.unwrap_or((t, count));
         self.last = Some((t, count));
         // A counter counts on in a long gap; how far the shaft turned where it jumped is not known.
-        if kind != Row::Jumped {
+        if !matches!(kind, Row::Jumped | Row::Returned) {
             self.position += i64::from(count.wrapping_sub(last) as i32);
         }
         self.least = self.least.min(self.position);

@@ -1,4 +1,4 @@
-//! Rows that are no motion: what is printed of them.
+//! Bad counts, counters that are set again, and motion within a count: what is printed of them.
 
 use crate::{Folder, HOST_SIM};
 
@@ -39,4 +39,28 @@ fn header_has_the_motion_without_a_jump() {
         // A count in 10 ms is 0.15 rad/s.
         assert!((up_to - speed).abs() < 0.16, "{up_to} {speed}");
     }
+}
+
+/// A shaft of 9 counts a row at 100 Hz, 1.38 rad/s, whose counter is set to 0 after different times.
+#[test]
+fn counter_that_is_set_to_zero_is_named_and_is_no_motion() {
+    let folder = Folder::new(HOST_SIM);
+    let (mut set, mut next) = (0, 0);
+    let row = |k: i64| {
+        if k == next {
+            (set, next) = (k, k + 20 + 7 * k % 60);
+        }
+        format!("{:.2},{}\n", 0.01 * k as f64, 9 * (k - set))
+    };
+    let rows: String = (0..2000).map(row).collect();
+    folder.write("log.csv", format!("t,counts_large\n{rows}"));
+    let (text, said) = folder.good_on(&["recommend", "log.csv"], b"");
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let [_, up_to] = motion(&text);
+    assert!((up_to - 1.38).abs() < 0.01, "{up_to}");
+    assert!(
+        said.contains("returns to nearly 0 from different counts in"),
+        "{said}"
+    );
+    assert!(!said.contains("--modulus"), "{said}");
 }

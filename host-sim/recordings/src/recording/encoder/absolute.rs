@@ -1,9 +1,12 @@
 //! Absolute encoders and short counters: counts that wrap at a revolution or at 16 bits.
 
+mod sizes;
+
 use crate::recording::Recording;
 use crate::recording::options::{Column, ReadOptions};
 use crate::recording::times::steps::Steps;
 use estimator_core::{Count, WrapError};
+use sizes::Sizes;
 
 /// Modulus of a 16-bit counter.
 const SHORT: u32 = 1 << 16;
@@ -57,6 +60,8 @@ pub(crate) enum Found {
     Wraps(u32),
     /// The counts have an impossible jump, the first number, and span the second number of counts.
     Jumps(i64, i64),
+    /// The same, where the jumps have different sizes.
+    Unequal(i64, i64),
     /// The counts are this one in a number of rows, and within a revolution in all others.
     Failed(i64, u64),
     /// The counts wrap at this modulus and cannot be unwrapped.
@@ -91,6 +96,10 @@ impl Found {
                     true => modulus_option(column, jump, span),
                     false => String::new(),
                 }
+            ),
+            Self::Unequal(jump, span) => format!(
+                "{column} jumps by {jump} from one row to the next and spans {span} counts; its jumps have different \
+                 sizes, as of a counter that is set to zero or of bad counts, and not of an encoder that wraps"
             ),
             Self::Failed(count, rows) => format!(
                 "{column} is {count} in {rows} {} and from 0 to {} in all others, as where readings of an absolute \
@@ -151,6 +160,7 @@ pub(crate) struct Extent {
     outside: Option<(i64, u64)>,
     /// Whether another count is outside of a revolution too.
     has_others: bool,
+    sizes: Sizes,
 }
 
 impl Extent {
@@ -160,6 +170,7 @@ impl Extent {
         let step = self.ends.map_or(0, |_| count - self.last);
         self.ends = Some([least.min(count), most.max(count)]);
         self.last = count;
+        self.sizes.add(step);
         if !(0..i64::from(moduli[0])).contains(&count) {
             let (known, rows) = self.outside.get_or_insert((count, 0));
             match *known == count {
@@ -210,9 +221,12 @@ pub(crate) fn found((jump, rows): (i64, f64), seen: &Extent, per_rev: u32) -> Op
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
     // An encoder of another modulus: one row passes most of the counts of the whole log.
     let far = far || (SPANS.contains(&span) && 4 * jump.abs() >= 3 * (span + 1));
-    wraps
-        .map(Found::Wraps)
-        .or(far.then_some(Found::Jumps(jump, span + 1)))
+    let span = span + 1;
+    let jumps = match 4 * jump.abs() >= 3 * span && seen.sizes.contradict(span) {
+        true => Found::Unequal(jump, span),
+        false => Found::Jumps(jump, span),
+    };
+    wraps.map(Found::Wraps).or(far.then_some(jumps))
 }
 
 /// Moduli at which counts are unwrapped without an option.

@@ -224,6 +224,37 @@ fn counts_of_more_than_a_revolution_do_not_wrap_at_it() {
     );
 }
 
+/// A counter that is set to zero at any count has no modulus; bad readings of an encoder that wraps are fewer.
+#[test]
+fn jumps_of_different_sizes_are_no_wraps() {
+    let said = |count: &mut dyn FnMut(i64) -> i64| {
+        let rows = (0..3000).map(|k| format!("{k}e-3,{}\n", count(k)));
+        let text = format!("t,counts_large\n{}", rows.collect::<String>());
+        let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        recording.unwrap_counts(&encoder(4096)).join("\n")
+    };
+    for step in [3, -40] {
+        // It is set after 30 to 79 rows.
+        let (mut at, mut next) = (0, 0);
+        let set = said(&mut |k| {
+            if k >= next {
+                (at, next) = (k, k + 30 + 7 * k % 50);
+            }
+            step * (k - at)
+        });
+        let unequal = "counts; its jumps have different sizes, as of a counter that is set to zero or of bad counts";
+        assert!(set.contains(unequal) && !set.contains("--modulus"), "{set}");
+    }
+    let wraps = said(&mut |k| match k {
+        500 | 1700 => 400,
+        _ => (7 * k) % 1000,
+    });
+    assert!(
+        wraps.contains("or --modulus counts_large=N, N about 1000,"),
+        "{wraps}"
+    );
+}
+
 /// A wrap passes three quarters of the modulus at least: a smaller jump is no reason to name one.
 #[test]
 fn modulus_is_named_where_the_jump_is_that_of_a_wrap() {
