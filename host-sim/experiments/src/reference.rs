@@ -231,9 +231,12 @@ impl Noises {
         }
         let changes = counts.windows(2).filter(|pair| pair[0] != pair[1]).count();
         if changes < FEWEST_CHANGES {
+            let finer = recording.finer.as_ref();
+            let finer = finer.filter(|finer| finer.changes >= FEWEST_CHANGES);
+            let remedy = finer.map_or("record more motion", |finer| &finer.remedy);
             return Err(format!(
                 "counts_large changes at {changes} rows; a reference without true_omega needs at least \
-                 {FEWEST_CHANGES}: record more motion"
+                 {FEWEST_CHANGES}: {remedy}"
             ));
         }
         let thinned = thinned::thinned(recording);

@@ -28,6 +28,7 @@ pub use board::BoardColumns;
 pub use capture::Capture;
 pub use columns::currents::implausible_current;
 pub use encoder::absolute::{after, boundary};
+pub use encoder::finer::Finer;
 pub(crate) use encoder::stale;
 pub use layout::formats::{KnownLog, known_logs};
 pub use numbers::shown;
@@ -63,6 +64,8 @@ pub struct Recording {
     pub current_small: Option<Vec<f64>>,
     /// The board's own estimates in these rows, where they were read too.
     pub board: BoardColumns,
+    /// What the positions tell if the counts change in few of the rows in which they do.
+    pub finer: Option<Finer>,
     /// Number of steps of `t` that differ from the period by more than a tenth of it.
     pub uneven_steps: usize,
     /// Number of rows that are left out because they have the time of the row before.

@@ -294,6 +294,7 @@ impl<'a> Columns<'a> {
         notes.extend(gaps.note());
         let periods = clock::periods(&self.t, rate_hz);
         let mut recording = Recording {
+            finer: self.counts_large.finer(0, self.options),
             uneven_steps,
             repeated_rows: self.repeated.rows(),
             notes,
@@ -318,6 +319,7 @@ impl<'a> Columns<'a> {
         Recording {
             board: board.unwrap_or_default(),
             t: front(&mut self.t, rows),
+            finer: None,
             uneven_steps: 0,
             repeated_rows: 0,
             current_small: any(&[Column::CurrentSmall, Column::CurrentSmallMeasured])

@@ -2,6 +2,7 @@
 
 pub(super) mod absolute;
 mod clipped;
+pub(super) mod finer;
 pub(super) mod grid;
 pub(super) mod held;
 pub(crate) mod stale;

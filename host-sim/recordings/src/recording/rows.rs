@@ -30,6 +30,7 @@ impl Recording {
             board: self.board.split_front(rows),
             uneven_steps: 0,
             repeated_rows: 0,
+            finer: None,
             notes: Vec::new(),
             trace: Trace {
                 rate_hz: trace.rate_hz,

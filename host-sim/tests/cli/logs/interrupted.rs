@@ -64,3 +64,22 @@ fn counter_that_is_set_to_zero_is_named_and_is_no_motion() {
     );
     assert!(!said.contains("--modulus"), "{said}");
 }
+
+/// A swing of 0.02 degrees: a count of 4096 is 0.088 degrees.
+#[test]
+fn motion_within_a_count_is_refused_with_the_counts_per_revolution() {
+    let folder = Folder::new(HOST_SIM);
+    let row = |k: u32| {
+        let t = 1e-3 * f64::from(k);
+        format!("{t:.3},{:.6}\n", 0.02 * (20.0 * t).sin())
+    };
+    let rows: String = (0..1000).map(row).collect();
+    folder.write("log.csv", format!("t,angle_deg\n{rows}"));
+    let line = folder.refused(&["recommend", "log.csv"]);
+    let said = "most of them by less than a count with 4096 counts/rev, as is assumed where no number is given";
+    assert!(
+        line.contains(said) && line.contains("--counts-per-rev"),
+        "{line}"
+    );
+    let _ = folder.good(&["recommend", "log.csv", "--counts-per-rev", "1048576"]);
+}

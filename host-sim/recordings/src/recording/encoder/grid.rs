@@ -62,9 +62,19 @@ impl Grid {
         self.changed += 1;
     }
 
+    /// Number of rows with a change.
+    pub(super) fn changes(&self) -> usize {
+        self.changed
+    }
+
+    /// The smallest change; `None` without changes.
+    pub(super) fn least(&self) -> Option<f64> {
+        self.changes.iter().copied().reduce(f64::min)
+    }
+
     /// Whether a good part of the changes are larger than the smallest one.
     pub(super) fn is_varied(&self) -> bool {
-        let least = self.changes.iter().copied().fold(f64::INFINITY, f64::min);
+        let least = self.least().unwrap_or(f64::INFINITY);
         let larger = self
             .changes
             .iter()

@@ -108,7 +108,7 @@ impl Encoder {
     }
 
     /// What the counts of a revolution are by a `step` of the positions, counts.
-    fn by_counts(&self, step: f64, counts_per_rev: u32, given: &str) -> String {
+    pub(super) fn by_counts(&self, step: f64, counts_per_rev: u32, given: &str) -> String {
         let steps = f64::from(counts_per_rev) / step;
         let own = steps.round();
         if own == f64::from(counts_per_rev) && (steps - own).abs() > PART {
@@ -149,7 +149,7 @@ impl Encoder {
 }
 
 /// The power of ten that `step` is; `None` if it is none.
-fn power_of_ten(step: f64) -> Option<f64> {
+pub(super) fn power_of_ten(step: f64) -> Option<f64> {
     let power = to_digits(step, 1);
     let is_power = (power.log10() - power.log10().round()).abs() < 1e-9;
     (is_power && (step / power - 1.0).abs() < DIGIT).then_some(power)
