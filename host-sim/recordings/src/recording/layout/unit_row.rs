@@ -24,6 +24,10 @@ impl UnitRow {
     pub(super) fn find(lines: &[&str]) -> Option<Self> {
         let row = |(index, line): (usize, &&str)| {
             let line = comment(line).unwrap_or(line);
+            // Most lines are numbers, and need no search.
+            if !line.contains(is_letter) {
+                return None;
+            }
             Separator::ALL.into_iter().find_map(|separator| {
                 let fields = separator.split(line);
                 let inside: Option<Vec<_>> = fields.iter().map(|field| inside(field)).collect();
@@ -64,19 +68,24 @@ impl UnitRow {
 /// quantity, and all as short as units are.
 fn are_bare(separator: Separator, fields: &[String]) -> bool {
     let filled: Vec<_> = fields.iter().filter(|field| !field.is_empty()).collect();
-    let is_ours = |field: &&&String| {
+    let is_text =
+        |field: &&String| field.chars().count() <= LONGEST && !is_number(field, separator);
+    if filled.len() < 2 || !filled.iter().all(is_text) {
+        return false;
+    }
+    let is_ours = |field: &&String| {
         matches!(
             Quantity::of_unit(field),
             Some(Quantity::Time | Quantity::Position)
         )
     };
-    let is_text =
-        |field: &&String| field.chars().count() <= LONGEST && !is_number(field, separator);
     let units = filled.iter().filter(|field| is_any_unit(field)).count();
-    filled.len() > 1
-        && 2 * units > filled.len()
-        && filled.iter().any(|field| is_ours(&field))
-        && filled.iter().all(is_text)
+    2 * units > filled.len() && filled.iter().any(is_ours)
+}
+
+/// Whether `c` is a letter of a unit, and none of an exponent.
+fn is_letter(c: char) -> bool {
+    c == '\u{b0}' || (c.is_alphabetic() && !c.eq_ignore_ascii_case(&'e'))
 }
 
 /// Whether a field of a header is a name: neither empty nor a unit.
