@@ -3,20 +3,21 @@
 mod choice;
 mod guess;
 mod languages;
+mod numbered;
 
 use device_files::to_digits;
 
 use super::endings::Ending;
 use super::formats::Ambiguous;
 use super::header::short;
-use super::search::{is_number, number};
-use super::{Keyed, Layout, Places, Seen, has, is_duration, is_joint, seen};
+use super::search::is_number;
+use super::{Keyed, Layout, Places, has, is_duration, is_joint};
 use crate::recording::options::Column;
-use crate::recording::options::units::Quantity;
 use crate::recording::records::labelled::is_labelled;
 use crate::recording::text::separator::Separator;
 pub(crate) use guess::{current, guessed_unit, theirs};
-use guess::{guessed_columns, is_unfit, parts, positions, times};
+use guess::{is_unfit, parts, positions, times};
+use numbered::has_no_time;
 
 /// Positions that a message lists.
 const LISTED: usize = 4;
@@ -41,25 +42,17 @@ pub(crate) fn option(layout: &Layout, places: &Places) -> String {
             Some(_) => "write one name for each column, or ",
             None => "",
         };
-        return match layout.names.len() {
-            1 if !layout.has_rate => format!(
-                "{names}give the number of the column and the rate of the rows, for example --column \
-                 counts_large=1:counts --row-rate 1000"
-            ),
-            _ if layout.has_rate => format!(
-                "{names}give the number of the column, for example --column {}",
-                numbered(layout)
-            ),
-            _ if has_no_time(layout) => format!(
-                "no column rises in all of the first rows, as a time does; {names}give the number of the position and the \
-                 rate of the rows, for example --row-rate 1000 --column {}",
-                numbered(layout)
-            ),
-            _ => format!(
-                "{names}give the numbers of the columns, for example --column {}",
-                numbered(layout)
-            ),
+        let wanted = if layout.has_rate {
+            "give the number of the column"
+        } else if layout.names.len() == 1 {
+            "give the number of the column and the rate of the rows"
+        } else if has_no_time(layout) {
+            "no column rises in all of the first rows, as a time does; give the number of the position and the rate of the \
+             rows"
+        } else {
+            "give the numbers of the columns"
         };
+        return format!("{names}{wanted}, for example {}", numbered::option(layout));
     }
     let choices = [
         choice::of_times(layout, places),
@@ -75,88 +68,6 @@ pub(crate) fn option(layout: &Layout, places: &Places) -> String {
         parts(layout),
         only_indirect(layout).unwrap_or_default()
     )
-}
-
-/// Whether the first rows of columns without names tell that none is a time.
-fn has_no_time(layout: &Layout) -> bool {
-    layout.since_1970.is_empty() && layout.moments.is_empty() && seen::has_no_time(&layout.seen)
-}
-
-/// The value of `--column` for columns without names: the time, unless the rate of the rows is stated, and the position.
-fn numbered(layout: &Layout) -> String {
-    let time = numbered_time(layout);
-    let place = numbered_position(layout, time.as_ref().map(|time| time.place));
-    let position = guessed_unit(layout, Quantity::Position, place);
-    let time = time.filter(|_| !layout.has_rate);
-    let guessed = time.iter().filter_map(|time| time.guessed);
-    let guessed: Vec<_> = guessed.chain([position]).collect();
-    let time = time.map(|time| format!("t={},", time.text));
-    format!(
-        "{}counts_large={}:{position}, where {}",
-        time.unwrap_or_default(),
-        place + 1,
-        guessed_columns(&guessed)
-    )
-}
-
-/// A time without a name, as `--column` calls it.
-struct NumberedTime {
-    /// The last of its columns.
-    place: usize,
-    text: String,
-    /// Its unit if the numbers do not tell it.
-    guessed: Option<&'static str>,
-}
-
-/// The time among columns without names: one since 1970 in the first row, or the column that rises most evenly; the
-/// first one in a text of a row or two.
-fn numbered_time(layout: &Layout) -> Option<NumberedTime> {
-    if layout.names.len() < 2 || has_no_time(layout) {
-        return None;
-    }
-    let has_integer = |place| has_number(layout, place) && !layout.is_fractional(place);
-    let (place, text, guessed) = match layout.since_1970.first() {
-        Some((place, "s")) if [*place, place + 1].into_iter().all(has_integer) => {
-            let text = format!("{}:s+{}:ns", place + 1, place + 2);
-            (place + 1, text, Some("ns"))
-        }
-        Some((place, unit)) => (*place, format!("{}:{unit}", place + 1), None),
-        // A date has no unit.
-        None if layout.moments.contains(&0) => (0, "1".to_owned(), None),
-        None => {
-            let place = seen::time(&layout.seen).unwrap_or(0);
-            let unit = guessed_unit(layout, Quantity::Time, place);
-            (place, format!("{}:{unit}", place + 1), Some(unit))
-        }
-    };
-    Some(NumberedTime {
-        place,
-        text,
-        guessed,
-    })
-}
-
-/// The position among columns without names: the next number behind that of the `time` that changes and does not count
-/// the rows.
-fn numbered_position(layout: &Layout, time: Option<usize>) -> usize {
-    let next = time.map_or(0, |time| time + 1);
-    let columns = layout.names.len();
-    let others = (next..columns).chain(0..next.min(columns));
-    let others = others.filter(|place| Some(*place) != time && has_number(layout, *place));
-    let others: Vec<_> = others.collect();
-    let is_motion = |place: &&usize| {
-        let counts_rows = layout.seen.get(**place).is_some_and(Seen::is_counting);
-        !layout.is_at_rest(**place) && !counts_rows
-    };
-    let place = others.iter().find(is_motion).or(others.first());
-    place.copied().unwrap_or(next)
-}
-
-/// Whether the first row without a header has a number at `place`.
-fn has_number(layout: &Layout, place: usize) -> bool {
-    let fields = layout.separator.split(&layout.first_row);
-    let field = fields.get(place);
-    field.is_some_and(|field| number(field, layout.separator).is_some())
 }
 
 /// The name of a position that is not measured at the shaft, where there is no other one.
@@ -246,8 +157,8 @@ fn on_its_side(layout: &Layout) -> Option<String> {
         format!(
             "there are no names but {columns} columns: if each line is a signal, exchange lines and columns, for example \
              with numpy.savetxt('log.csv', numpy.loadtxt(FILE{of}).T, delimiter=','); else give the numbers of \
-             the columns, for example --column {}",
-            numbered(layout)
+             the columns, for example {}",
+            numbered::option(layout)
         )
     })
 }

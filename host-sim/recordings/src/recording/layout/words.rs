@@ -9,12 +9,11 @@ pub(crate) const TIMES: &[&str] = &["time", "stamp", "ts"];
 /// Parts of the names of what is derived from a position.
 const DERIVED: &[&str] = &["vel", "speed", "omega", "acc", "dot"];
 
-/// Parts of the names of positions that are no measured position of the shaft, or of another angle.
+/// Parts of the names of positions that are no measured position of the shaft, or of another angle. `soll` and `consign`
+/// are targets in German and French; `e` and `d` are electrical and desired: `theta_e`, `theta_d`.
 const INDIRECT: &[&str] = &[
     "err", "target", "cmd", "command", "demand", "request", "ref", "set", "sp", "des", "goal",
-    "elec", "delta", "diff", "rate", "tcp", // Targets in other languages.
-    "soll", "consign", // Electrical and desired: theta_e, theta_d.
-    "e", "d",
+    "elec", "delta", "diff", "rate", "tcp", "soll", "consign", "e", "d",
 ];
 
 /// Parts of a name beside which `q` is no joint: quantities of the q axis, and parts of a quaternion.
@@ -145,6 +144,16 @@ mod tests {
     }
 
     #[test]
+    fn coordinate_is_a_part_of_a_name() {
+        for name in ["x_position", "pose.y", "rotation_w", "PosZ"] {
+            assert!(is_coordinate(name), "{name}");
+        }
+        for name in ["exp_pos", "xpos", "angle", "max_angle"] {
+            assert!(!is_coordinate(name), "{name}");
+        }
+    }
+
+    #[test]
     fn joint_is_a_whole_name() {
         for name in [
             "joint1",
@@ -182,6 +191,8 @@ mod tests {
         }
         for name in [
             "theta_d_rad",
+            "Sollwinkel",
+            "angle_consigne",
             "posd",
             "theta_e",
             "angle_sp",

@@ -66,22 +66,18 @@ pub(super) fn parts(layout: &Layout) -> String {
 }
 
 /// What to say of units that are guesses.
-fn guesses(units: &[&str]) -> String {
-    match units {
+fn guesses(guessed: &[&str]) -> String {
+    match guessed {
         [] => String::new(),
-        [one] => format!(", where the unit {one} is a guess"),
-        all => format!(", where the units {} are guesses", all.join(" and ")),
+        [_] => format!(", where {} is a guess", units(guessed)),
+        _ => format!(", where {} are guesses", units(guessed)),
     }
 }
 
-/// What to say of columns without names, which are guesses as their units are.
-pub(super) fn guessed_columns(units: &[&str]) -> String {
-    let units = match units {
-        [] => String::new(),
-        [one] => format!(" and the unit {one}"),
-        all => format!(" and the units {}", all.join(" and ")),
-    };
-    format!("the columns{units} are guesses")
+/// Units, of which there is one at least, with their noun.
+pub(super) fn units(all: &[&str]) -> String {
+    let noun = if all.len() == 1 { "unit" } else { "units" };
+    format!("the {noun} {}", all.join(" and "))
 }
 
 /// Whether by its `name` a quantity is another one than `column`, whose words it has.

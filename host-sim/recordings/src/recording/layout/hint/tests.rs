@@ -187,7 +187,7 @@ fn example_has_no_time_where_the_rate_is_stated() {
     }
     let error = read("1\n2\n", "").unwrap_err();
     let said = "there are no names but 1 column; give the number of the column and the rate of the rows, for \
-                example --column counts_large=1:counts --row-rate 1000";
+                example --row-rate 1000 --column counts_large=1:counts, where";
     assert!(error.contains(said), "{error}");
 }
 
