@@ -8,8 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use experiments::reference::{ShaftMotion, TruthCheck};
-use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
+use experiments::replay::{self, Against, Run};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
 use recordings::arguments::{DeviceFile, RecordingOptions};
@@ -19,7 +18,7 @@ use terminal::output::{is_stdout, note, print_text, write_whole};
 use terminal::wording::wrapped;
 
 use super::arguments::{ParameterOptions, kinds};
-use super::page::{one_to_stdout, progress};
+use super::page::one_to_stdout;
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
 
@@ -75,12 +74,7 @@ pub(super) enum ReferenceUse {
 }
 
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
-    one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
-    let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
-    if options.deviations && json_to_stdout && options.out.is_none() {
-        let why = "--deviations: --json - writes no velocities; give --out FILE.csv";
-        return Err(Failure::Input(why.to_owned()));
-    }
+    let out = options.velocities_to()?;
     let kinds = kinds(&options.estimators)?;
     let loaded = options.device.loaded()?;
     let parameters = options.parameters.load(&kinds)?;
@@ -90,9 +84,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let counted = options.recording.counted(loaded, logs)?;
     let device = counted.device;
     let (read, survey) = options.recording.survey(&log, &device)?;
-    survey.check_times(log.name())?;
+    survey.check_times(name)?;
     let recorded = Recorded {
-        path: log.name(),
+        path: name,
         trace: &survey.columns,
         unevenness: survey.unevenness(),
         device: &device,
@@ -104,37 +98,27 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         without,
         interruptions,
     } = reference(options, &log, &survey, &device)?;
+    let columns = &survey.columns;
     let against = match &reference {
-        Some(reference) if survey.columns.true_omega.is_none() => Against::Reference(reference),
+        Some(reference) if columns.true_omega.is_none() => Against::Reference(reference),
         _ => Against::Truth,
     };
-    let (columns, rows) = (&survey.columns, survey.rows);
     let file = short_name(&options.trace);
-    let mut run = Run::new(columns, rows, &file, &chosen.kinds, &device, &parameters)?;
+    let mut run = Run::new(
+        columns,
+        survey.rows,
+        &file,
+        &chosen.kinds,
+        &device,
+        &parameters,
+    )?;
     if !options.estimators.is_empty() || run.estimates.is_empty() {
-        refuse_left_out(log.name(), &run.left_out)?;
+        refuse_left_out(name, &run.left_out)?;
     }
-    let mut passes = Passes {
-        parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
-        summary: BoardSummary::default(),
-        truth: TruthCheck::default(),
-        motion: ShaftMotion::default(),
-        counts_per_rev: device.stages.large.counts_per_rev,
-        bar: progress(
-            rows.div_ceil(section_rows(rows)) * run.estimates.len(),
-            "estimating",
-        ),
-        section: section_rows(rows),
-        reference: reference.as_ref(),
-        scores: matches!(against, Against::Reference(_)),
-        columns: options.reference == Some(ReferenceUse::Columns),
-        deviations: options.deviations,
-        passed: 0..0,
-    };
-    let out = match &options.out {
-        None if json_to_stdout => None,
-        out => Some(out.as_deref().unwrap_or(Path::new("-"))),
-    };
+    let parts = Parts::open(log.reader()?, name, &read, &survey)?;
+    let reference = reference.as_ref();
+    let parts = (parts, survey.rows);
+    let mut passes = Passes::new(options, parts, &run, &device, &against, reference);
     match out {
         Some(out) => write_rows(out, &mut passes, &mut run)?,
         None => while passes.step(&mut run)? {},
@@ -145,6 +129,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     if let Some(path) = &options.json {
         write_whole(path, &rows::json(&against.scored(&rows, columns))?)?;
     }
+    for line in &counted.lines {
+        note(line);
+    }
     let about = About {
         notes: [survey.notes.clone(), passes.parts.notes()].concat(),
         clock: chosen.notes(&Recorded {
@@ -154,16 +141,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         left_out: &run.left_out,
         mismatched_presets: &run.mismatched_presets,
     };
-    for line in &counted.lines {
-        note(line);
-    }
     about.note(name);
-    for line in passes.summary.lines(&device) {
-        note(format_args!("{name}: {line}"));
-    }
-    for line in interruptions.into_iter().chain(passes.truth.line()) {
-        note(wrapped(&format!("{name}: {line}"), 2));
-    }
+    passes.note(name, &device, interruptions);
     if options.deviations && run.estimates.iter().all(|e| e.deviation.is_none()) {
         note("--deviations: none of these estimators reports a standard deviation");
     }
@@ -171,37 +150,56 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     if let Some(why) = &without {
         note(format_args!("{name}: no scores: {why}"));
     }
-    let against = match against {
-        Against::Truth => "",
-        Against::Reference(reference) => {
-            let limits = reference.limits(survey.columns.rate_hz);
-            note(wrapped(
-                &format!("{name}: no column true_omega; scores are against a reference: {limits}"),
-                2,
-            ));
-            ", scores against a reference computed from the recording itself"
-        }
-    };
-    let size = (survey.rows, survey.columns.rate_hz);
-    let header = replay::header(
-        size,
-        &device,
-        &device_name(options, counted.is_stated),
-        &parameters,
-    );
+    let size = (survey.rows, columns.rate_hz);
+    let device_name = device_name(options, counted.is_stated);
+    let header = replay::header(size, &device, &device_name, &parameters);
     let motion = passes.motion.line(device.stages.large.counts_per_rev);
-    let header = format!("{header}; {motion}{against}");
-    let header = wrapped(&format!("{name}: {header}"), 2);
-    if json_to_stdout || out.is_some_and(is_stdout) {
+    let against = noted(&against, name, columns.rate_hz);
+    let header = wrapped(&format!("{name}: {header}; {motion}{against}"), 2);
+    if [out, options.json.as_deref()]
+        .into_iter()
+        .flatten()
+        .any(is_stdout)
+    {
         note(header);
         return Ok(());
     }
-    let with_coupler = survey.columns.counts_small.is_some();
+    let with_coupler = columns.counts_small.is_some();
     let table = match without {
         Some(_) => String::new(),
         None => replay::table(&rows, with_coupler, terminal_width()),
     };
     print_text(&format!("{header}\n{table}"))
+}
+
+impl Replay {
+    /// Where the velocities are written, if they are.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where two outputs have one place, and for deviations of velocities that are not written.
+    fn velocities_to(&self) -> Result<Option<&Path>, Failure> {
+        one_to_stdout(&[("--out", &self.out), ("--json", &self.json)])?;
+        let out = self.out.as_deref();
+        if !self.json.as_deref().is_some_and(is_stdout) {
+            return Ok(Some(out.unwrap_or(Path::new("-"))));
+        }
+        if self.deviations && out.is_none() {
+            let why = "--deviations: --json - writes no velocities; give --out FILE.csv";
+            return Err(Failure::Input(why.to_owned()));
+        }
+        Ok(out)
+    }
+}
+
+/// What the header says of the scores of the recording `name`, after a note on the limits of a reference.
+fn noted(against: &Against, name: &str, rate_hz: f64) -> &'static str {
+    let Against::Reference(reference) = against else {
+        return "";
+    };
+    let limits = reference.limits(rate_hz);
+    let line = format!("{name}: no column true_omega; scores are against a reference: {limits}");
+    note(wrapped(&line, 2));
+    ", scores against a reference computed from the recording itself"
 }
 
 /// Where the device comes from, and where its counts per revolution do if they are not its own: `is_stated` if the

@@ -5,11 +5,16 @@ use std::ops::Range;
 use std::path::Path;
 
 use experiments::reference::{Reference, ShaftMotion, TruthCheck};
-use experiments::replay::{self, BoardSummary, Run};
+use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use indicatif::ProgressBar;
 use recordings::recording::Parts;
+use simulation::device::Device;
 use terminal::failure::Failure;
-use terminal::output::write_with;
+use terminal::output::{note, write_with};
+use terminal::wording::wrapped;
+
+use super::super::page::progress;
+use super::{ReferenceUse, Replay};
 
 /// The second pass over a log.
 pub(super) struct Passes<'a> {
@@ -33,7 +38,45 @@ pub(super) struct Passes<'a> {
     pub(super) passed: Range<usize>,
 }
 
-impl Passes<'_> {
+impl<'a> Passes<'a> {
+    /// The pass over the rows of `parts`, so many, for `run`, before its first section.
+    pub(super) fn new(
+        options: &Replay,
+        (parts, rows): (Parts<'a>, usize),
+        run: &Run,
+        device: &Device,
+        against: &Against,
+        reference: Option<&'a Reference>,
+    ) -> Self {
+        let section = section_rows(rows);
+        let steps = rows.div_ceil(section) * run.estimates.len();
+        Self {
+            parts,
+            summary: BoardSummary::default(),
+            truth: TruthCheck::default(),
+            motion: ShaftMotion::default(),
+            counts_per_rev: device.stages.large.counts_per_rev,
+            bar: progress(steps, "estimating"),
+            section,
+            reference,
+            scores: matches!(against, Against::Reference(_)),
+            columns: options.reference == Some(ReferenceUse::Columns),
+            deviations: options.deviations,
+            passed: 0..0,
+        }
+    }
+
+    /// Prints what the rows of the recording `name` tell of the board, and whether its truth is that of its counts,
+    /// after the `interruptions` of its reference.
+    pub(super) fn note(&self, name: &str, device: &Device, interruptions: Option<String>) {
+        for line in self.summary.lines(device) {
+            note(format_args!("{name}: {line}"));
+        }
+        for line in interruptions.into_iter().chain(self.truth.line()) {
+            note(wrapped(&format!("{name}: {line}"), 2));
+        }
+    }
+
     /// Runs the estimators over the next section; `false` after the last one.
     pub(super) fn step(&mut self, run: &mut Run) -> Result<bool, Failure> {
         let mut rows = self.parts.next(self.section)?;
